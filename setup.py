@@ -1,0 +1,37 @@
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'thrust_allocator'
+
+# Run-time dependencies from PyPI that a ROS 2 Jazzy installation brings along itself
+jazzy = ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces']
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(include=[package_name]),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
+        (f'share/{package_name}', ['package.xml']),
+        (f'share/{package_name}/config', glob('config/*.yaml')),
+    ],
+    python_requires='>=3.10',
+    install_requires=['setuptools', 'numpy', 'osqp>=1.1', 'PyYAML'],
+    extras_require={
+        'jazzy': jazzy,
+        'test': ['pytest', 'hypothesis', 'daqp', 'flake8'],
+        'plot': ['matplotlib'],
+    },
+    zip_safe=True,
+    maintainer='thrust_allocator maintainers',
+    maintainer_email='maintainers@thrust-allocator.example',
+    description='Thrust allocation for AUVs and ROVs with bounds that move with the speed',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'node = thrust_allocator.node:main',
+            'demo = thrust_allocator.demo:main',
+        ],
+    },
+)

@@ -1,0 +1,116 @@
+"""The allocation problem, eq. 2.6 of Kostenko and Tolstonogov (2017), on OSQP."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import osqp
+import scipy.sparse
+from thrust_allocator.active_set import ActiveSet
+from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.vehicle import Vehicle
+
+TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
+MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
+WORST_CONDITION = 1e13  # of the Hessian; beyond it double precision has nothing left to give
+
+
+@dataclass(frozen=True)
+class Allocation:
+    """What one tick decided; p thrusters, wrenches in frd axes at the body origin."""
+
+    thrusts: np.ndarray  # tau, (p,), inside `limits` exactly [N]
+    limits: np.ndarray  # (2, p), row 0 lower, row 1 upper [N]
+    achieved: np.ndarray  # B tau, (6,) [N, N*m]
+    unallocated: np.ndarray  # commanded minus achieved, (6,) [N, N*m]
+    at_bound: np.ndarray  # (p,), -1: held at the lower limit, +1: at the upper one, 0: between
+    status: str  # OSQP's own word, 'solved' unless something is wrong
+    iterations: int  # OSQP's
+
+    @property
+    def solved(self) -> bool:
+        """Tell whether OSQP vouches for the thrusts being the optimum."""
+        return self.status == 'solved'
+
+
+class AllocationProblem:
+    """
+    The quadratic programme, set up once and solved at every tick for a new wrench and new bounds.
+
+    minimise    1/2 (tau^T Q tau + s^T R s)
+    subject to  B tau = f + s,  tau_min <= tau <= tau_max                    (eq. 2.6)
+
+    The slack s is eliminated, leaving the Hessian P = Q + B^T R B = L L^T, and OSQP is given the
+    problem in w = L^T tau, where its Hessian is the identity: then its dual residual bounds the
+    error of the thrusts whatever the weights, so one tolerance does for every vehicle. Bounds and
+    linear term are all that changes from tick to tick.
+    """
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        """
+        Set up the solver.
+
+        :raises ParameterError: if the weights and the geometry make the problem too
+            ill-conditioned for double precision.
+        """
+        self._matrix = vehicle.configuration_matrix
+        self._controlled = np.flatnonzero(vehicle.wrench_weights)
+        matrix = self._matrix[self._controlled]
+        # A common factor of Q and R changes nothing; this one makes the smallest weight in Q 1
+        thrust_weights = np.array([thruster.weight for thruster in vehicle.thrusters])
+        smallest = thrust_weights.min()
+        thrust_weights = thrust_weights / smallest
+        wrench_weights = np.array(vehicle.wrench_weights)[self._controlled] / smallest
+        self._active_set = ActiveSet(matrix, thrust_weights, wrench_weights)
+
+        # L^T by QR, which does not square the condition number as factorising P itself would
+        root = np.vstack([np.diag(np.sqrt(thrust_weights)),
+                          np.sqrt(wrench_weights)[:, np.newaxis] * matrix])
+        self._factor = np.linalg.qr(root, mode='r')  # L^T, (p, p) upper triangular
+        singular = np.linalg.svd(self._factor, compute_uv=False)
+        if singular[0]**2 > WORST_CONDITION * singular[-1]**2:
+            raise ParameterError(
+                f'wrench_weights: are up to {max(vehicle.wrench_weights):g} while thrusters weigh '
+                f'down to {smallest:g}; with these positions that is beyond double precision, must '
+                'lie closer together')
+        self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
+        self._gradient = -self._thrusts.T @ (matrix.T * wrench_weights)  # q = gradient @ f
+
+        p = len(thrust_weights)
+        self._tolerance = TOLERANCE * np.abs(vehicle.bollard_thrust).max()
+        self._solver = osqp.OSQP()
+        self._solver.setup(
+            scipy.sparse.identity(p, format='csc'), np.zeros(p),
+            scipy.sparse.csc_matrix(self._thrusts), np.zeros(p), np.zeros(p),
+            verbose=False, scaling=0, polishing=False,
+            eps_abs=self._tolerance,
+            # What rounding leaves of the gradient when a wrench is far out of reach
+            eps_rel=10.0 * np.finfo(float).eps * singular[0] / singular[-1],
+            max_iter=MAX_ITERATIONS, check_termination=1, check_dualgap=False,
+            # By iterations and never by the clock, so that a run repeats bit for bit
+            adaptive_rho=1, rho=float(np.clip(singular[0] * singular[-1], 1e-6, 1e6)))
+
+    def solve(self, wrench: np.ndarray, limits: np.ndarray) -> Allocation:
+        """
+        Allocate a wrench.
+
+        :param wrench: f, (6,), frd axes [N, N*m]; components of zero weight are not controlled.
+        :param limits: (2, p), row 0 lower, row 1 upper [N].
+        :return: the optimum, as OSQP found it; or, if OSQP does not report it solved, the best
+            point known, which is inside the limits all the same.
+        """
+        lower, upper = limits
+        command = wrench[self._controlled]
+        thrusts, multipliers = self._active_set.solve(command, lower, upper)
+        self._solver.update(q=self._gradient @ command, l=lower, u=upper)
+        self._solver.warm_start(x=self._factor @ thrusts, y=multipliers)
+        result = self._solver.solve(raise_error=False)
+        if result.info.status == 'solved':
+            multipliers = result.y
+            thrusts = self._thrusts @ result.x
+        at_bound = ((multipliers > self._tolerance).astype(np.int8)
+                    - (multipliers < -self._tolerance))
+        thrusts = np.where(at_bound > 0, upper, np.where(at_bound < 0, lower, thrusts))
+        thrusts = np.minimum(np.maximum(thrusts, lower), upper)
+        achieved = self._matrix @ thrusts
+        return Allocation(thrusts, limits, achieved, wrench - achieved, at_bound,
+                          result.info.status, result.info.iter)

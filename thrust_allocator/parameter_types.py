@@ -1,0 +1,185 @@
+"""Types of parameters: each reads a value from a file or from ROS, or says what is wrong."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+import re
+import reprlib
+
+LARGEST = 1e6  # of any magnitude in a vehicle's description, in the unit of its parameter
+_NAME = re.compile(r'[a-z][a-z0-9_]*')
+
+
+class ParameterError(ValueError):
+    """A mistake in a vehicle's description; the message is one line and names the parameter."""
+
+    @classmethod
+    def wrong(cls, name: str, value: object, allowed: object) -> 'ParameterError':
+        """Build the usual message: which parameter, what it is, what it must be."""
+        return cls(f'{name}: is {_short.repr(value)}, must be {allowed}')
+
+
+_short = reprlib.Repr()
+_short.maxstring = _short.maxother = 80
+_short.maxlist = _short.maxarray = 12
+
+
+@dataclass(frozen=True)
+class Real:
+    """A finite real number between two ends; a whole number will do."""
+
+    low: float = -LARGEST
+    high: float = LARGEST
+    above: bool = False  # the lower end itself is excluded
+    below: bool = False  # the upper end itself is excluded
+    or_zero: bool = False  # zero is allowed too
+
+    def __str__(self) -> str:
+        ends = ('(' if self.above else '[') + f'{self.low:.7g}, {self.high:.7g}'
+        return f'{"0 or " if self.or_zero else ""}a number in {ends}{")" if self.below else "]"}'
+
+    def read(self, name: str, value: object) -> float:
+        """Return `value` as a float; raise ParameterError unless it is one and in range."""
+        try:
+            number = _real(value)
+        except (ValueError, OverflowError):
+            raise ParameterError.wrong(name, value, self) from None
+        inside = self.low <= number <= self.high
+        if self.above and number == self.low or self.below and number == self.high:
+            inside = False
+        if not (inside or self.or_zero and number == 0.0):
+            raise ParameterError.wrong(name, value, self)
+        return number
+
+
+def _real(value: object) -> float:
+    # PyYAML and `ros2 param set` take 1.0e4 for a string, because YAML 1.1 wants a sign there.
+    if isinstance(value, str) and re.fullmatch(r'[-+]?[0-9.]+([eE][-+]?[0-9]+)?', value):
+        return float(value)
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError
+    return float(value)
+
+
+@dataclass(frozen=True)
+class Reals:
+    """A list of real numbers, each of a type of its own."""
+
+    items: tuple[Real, ...]
+    meaning: str  # what the list holds, for the error message
+
+    def __str__(self) -> str:
+        each = dict.fromkeys(str(item) for item in self.items)
+        return f'{self.meaning}: {len(self.items)} numbers, ' + ', then '.join(each)
+
+    def read(self, name: str, value: object) -> tuple[float, ...]:
+        """Return `value` as floats; raise ParameterError unless length and items are right."""
+        if isinstance(value, str) or not isinstance(value, Sequence) \
+                or len(value) != len(self.items):
+            raise ParameterError.wrong(name, value, self)
+        try:
+            return tuple(item.read(name, number) for item, number in zip(self.items, value))
+        except ParameterError:
+            raise ParameterError.wrong(name, list(value), self) from None
+
+
+@dataclass(frozen=True)
+class BollardThrust(Reals):
+    """The greatest thrust at rest in reverse (<= 0) and forward (>= 0), not both zero."""
+
+    items: tuple[Real, ...] = (Real(-LARGEST, 0.0), Real(0.0, LARGEST))
+    meaning: str = '[reverse, forward], not both 0'
+
+    def read(self, name: str, value: object) -> tuple[float, ...]:
+        """Return (reverse, forward); raise ParameterError if a limit has the wrong sign."""
+        limits = super().read(name, value)
+        if limits == (0.0, 0.0):
+            raise ParameterError.wrong(name, list(value), self)
+        return limits
+
+
+@dataclass(frozen=True)
+class Direction(Reals):
+    """Three components of a direction, of any length but zero."""
+
+    items: tuple[Real, ...] = (Real(),) * 3
+    meaning: str = '[x, y, z], not all 0'
+
+    def read(self, name: str, value: object) -> tuple[float, ...]:
+        """Return the unit vector; raise ParameterError for a vector without a direction."""
+        vector = super().read(name, value)
+        length = math.hypot(*vector)
+        if length < 1e-9:
+            raise ParameterError.wrong(name, list(value), self)
+        return tuple(component / length for component in vector)
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or false."""
+
+    def __str__(self) -> str:
+        return 'true or false'
+
+    def read(self, name: str, value: object) -> bool:
+        """Return `value`; raise ParameterError unless it is a bool."""
+        if not isinstance(value, bool):
+            raise ParameterError.wrong(name, value, self)
+        return value
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words."""
+
+    words: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return 'one of ' + ', '.join(self.words)
+
+    def read(self, name: str, value: object) -> str:
+        """Return `value`; raise ParameterError unless it is one of the words."""
+        if value not in self.words:
+            raise ParameterError.wrong(name, value, self)
+        return value
+
+
+@dataclass(frozen=True)
+class Names:
+    """A list of different names, at least one."""
+
+    def __str__(self) -> str:
+        return 'a list of one or more different names such as tunnel or stern_2 ([a-z][a-z0-9_]*)'
+
+    def read(self, name: str, value: object) -> tuple[str, ...]:
+        """Return the names; raise ParameterError if one is malformed or stands twice."""
+        if isinstance(value, str) or not isinstance(value, Sequence) or not value:
+            raise ParameterError.wrong(name, value, self)
+        for item in value:
+            if not isinstance(item, str) or not _NAME.fullmatch(item):
+                raise ParameterError(
+                    f'{name}: has the entry {_short.repr(item)}, must be {self}')
+        for item in value:
+            if list(value).count(item) > 1:
+                raise ParameterError(f'{name}: has {item!r} twice, must be {self}')
+        return tuple(value)
+
+
+@dataclass(frozen=True)
+class NotBuilt:
+    """A parameter of the published contract whose effect does not exist yet."""
+
+    effect: str
+    off: float | bool | tuple[float, ...] | None = None  # the value that asks for no effect
+
+    def __str__(self) -> str:
+        return 'left out' if self.off is None else f'{self.off} or left out'
+
+    def read(self, name: str, value: object) -> object:
+        """Return `value` if it asks for no effect; otherwise raise ParameterError."""
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            value = tuple(value)
+        if self.off is None or value != self.off or isinstance(value, bool) != isinstance(
+                self.off, bool):
+            raise ParameterError.wrong(name, value, f'{self}: {self.effect} not built yet')
+        return self.off

@@ -1,0 +1,104 @@
+"""The vehicle: its thrusters, its configuration matrix B, and the weights of the allocation."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from thrust_allocator.frames import DOFS, frd_signs
+from thrust_allocator.parameters import Parameters
+from thrust_allocator.propeller import PropellerLoss
+from thrust_allocator.tunnel import TunnelLoss
+
+
+@dataclass(frozen=True)
+class Thruster:
+    """One thruster; vectors are in frd axes, from the body origin."""
+
+    name: str
+    position: tuple[float, float, float]  # r [m]
+    direction: tuple[float, float, float]  # d, unit vector along which positive thrust pushes [-]
+    bollard_thrust: tuple[float, float]  # (reverse <= 0, forward >= 0) [N]
+    weight: float  # Q [-]
+    torque_ratio: float  # k, reaction torque about d per newton of thrust [m]
+    loss: PropellerLoss | TunnelLoss | None  # None: the Bollard limits hold at every speed
+
+    @property
+    def column(self) -> np.ndarray:
+        """Return the wrench of 1 N of thrust: (6,), [d; r x d + k d] (physics of eq. 2.6)."""
+        d = np.array(self.direction)
+        return np.concatenate([d, np.cross(self.position, d) + self.torque_ratio * d])
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """A vehicle, immutable and in frd axes, as the mathematics of this package needs it."""
+
+    thrusters: tuple[Thruster, ...]
+    wrench_weights: tuple[float, ...]  # R of surge ... yaw; 0: not controlled
+    water_density: float  # [kg/m^3]
+
+    @classmethod
+    def from_parameters(cls, parameters: Parameters) -> 'Vehicle':
+        """Build the vehicle that checked parameters describe, turned into frd axes."""
+        values = parameters.values
+        axes = tuple(frd_signs(values['vehicle_frame'])[:3])
+        density = values['water_density']
+        return cls(
+            tuple(_thruster(name, parameters.of_thruster(name), axes, density)
+                  for name in values['thruster_names']),
+            tuple(values[f'wrench_weights.{dof}'] for dof in DOFS),
+            density)
+
+    @cached_property
+    def configuration_matrix(self) -> np.ndarray:
+        """B of eq. 2.6, (6, p): column i is the wrench of 1 N of thrust i [N/N, N*m/N]."""
+        return _frozen(np.stack([thruster.column for thruster in self.thrusters], axis=1))
+
+    @cached_property
+    def bollard_thrust(self) -> np.ndarray:
+        """The limits of thrust at rest, (2, p): row 0 lower (<= 0), row 1 upper (>= 0) [N]."""
+        return _frozen(np.array([thruster.bollard_thrust for thruster in self.thrusters]).T.copy())
+
+    def warnings(self) -> list[str]:
+        """
+        Say which controlled DOFs the thrusters cannot act on, or not independently.
+
+        :return: one sentence per finding, for the log; empty if B has full rank over the
+            controlled DOFs.
+        """
+        matrix = self.configuration_matrix
+        controlled = [i for i in range(6) if self.wrench_weights[i] > 0.0]
+        dead = [i for i in controlled if np.abs(matrix[i]).max() < 1e-9 * np.abs(matrix).max()]
+        found = [f'no thruster can act on {DOFS[i]}: set wrench_weights.{DOFS[i]} to 0, '
+                 'or its command is never met' for i in dead]
+        alive = [i for i in controlled if i not in dead]
+        if alive:
+            rows = matrix[alive] / np.linalg.norm(matrix[alive], axis=1, keepdims=True)
+            rank = np.linalg.matrix_rank(rows, tol=1e-9)
+            if rank < len(alive):
+                found.append(
+                    f'the thrusters act on {", ".join(DOFS[i] for i in alive)} in only {rank} '
+                    f'independent ways: not every wrench can be met; set the wrench_weights of '
+                    'what need not be controlled to 0')
+        return found
+
+
+def _thruster(name: str, values: Mapping[str, Any], axes: tuple[float, ...],
+              water_density: float) -> Thruster:
+    loss = None
+    if values['model'] == 'propeller':
+        loss = PropellerLoss.from_parameters(values, water_density)
+    elif values['model'] == 'tunnel':
+        loss = TunnelLoss(values['area'], values['decay'])
+    return Thruster(
+        name,
+        tuple(float(sign * x) for sign, x in zip(axes, values['position'])),
+        tuple(float(sign * x) for sign, x in zip(axes, values['direction'])),
+        values['bollard_thrust'], values['weight'], values['torque_ratio'], loss)
+
+
+def _frozen(array: np.ndarray) -> np.ndarray:
+    array.flags.writeable = False
+    return array

@@ -10,6 +10,7 @@ from thrust_allocator.parameter_types import ParameterError
 from thrust_allocator.vehicle import Vehicle
 
 TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
+ROUNDING = 10.0 * np.finfo(float).eps  # of the whitened gradient, times the condition of L
 MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
 WORST_CONDITION = 1e13  # of the Hessian; beyond it double precision has nothing left to give
 
@@ -83,8 +84,8 @@ class AllocationProblem:
             scipy.sparse.csc_matrix(self._thrusts), np.zeros(p), np.zeros(p),
             verbose=False, scaling=0, polishing=False,
             eps_abs=self._tolerance,
-            # What rounding leaves of the gradient when a wrench is far out of reach
-            eps_rel=10.0 * np.finfo(float).eps * singular[0] / singular[-1],
+            # A wrench far out of reach makes a gradient so large that its rounding matters
+            eps_rel=ROUNDING * singular[0] / singular[-1],
             max_iter=MAX_ITERATIONS, check_termination=1, check_dualgap=False,
             # By iterations and never by the clock, so that a run repeats bit for bit
             adaptive_rho=1, rho=float(np.clip(singular[0] * singular[-1], 1e-6, 1e6)))

@@ -66,11 +66,13 @@ class Reals:
     """A list of real numbers, each of a type of its own."""
 
     items: tuple[Real, ...]
-    meaning: str  # what the list holds, for the error message
+    layout: str  # e.g. '[x, y, z]'
+    besides: str = ''  # what else must hold
 
     def __str__(self) -> str:
-        each = dict.fromkeys(str(item) for item in self.items)
-        return f'{self.meaning}: {len(self.items)} numbers, ' + ', then '.join(each)
+        different = list(dict.fromkeys(str(item) for item in self.items))
+        each = f', each {different[0]}' if len(different) == 1 else ': ' + ' and '.join(different)
+        return self.layout + each + self.besides
 
     def read(self, name: str, value: object) -> tuple[float, ...]:
         """Return `value` as floats; raise ParameterError unless length and items are right."""
@@ -88,7 +90,8 @@ class BollardThrust(Reals):
     """The greatest thrust at rest in reverse (<= 0) and forward (>= 0), not both zero."""
 
     items: tuple[Real, ...] = (Real(-LARGEST, 0.0), Real(0.0, LARGEST))
-    meaning: str = '[reverse, forward], not both 0'
+    layout: str = '[reverse, forward]'
+    besides: str = ', not both 0'
 
     def read(self, name: str, value: object) -> tuple[float, ...]:
         """Return (reverse, forward); raise ParameterError if a limit has the wrong sign."""
@@ -103,7 +106,8 @@ class Direction(Reals):
     """Three components of a direction, of any length but zero."""
 
     items: tuple[Real, ...] = (Real(),) * 3
-    meaning: str = '[x, y, z], not all 0'
+    layout: str = '[x, y, z]'
+    besides: str = ', not all 0'
 
     def read(self, name: str, value: object) -> tuple[float, ...]:
         """Return the unit vector; raise ParameterError for a vector without a direction."""
@@ -173,7 +177,7 @@ class NotBuilt:
     off: float | bool | tuple[float, ...] | None = None  # the value that asks for no effect
 
     def __str__(self) -> str:
-        return 'left out' if self.off is None else f'{self.off} or left out'
+        return 'left out' if self.off is None else f'{self.off} or left out'.lower()
 
     def read(self, name: str, value: object) -> object:
         """Return `value` if it asks for no effect; otherwise raise ParameterError."""

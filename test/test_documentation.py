@@ -1,0 +1,43 @@
+"""The documents say what the code does."""
+
+from pathlib import Path
+import re
+
+from thrust_allocator.parameters import MODELS, NODE, REQUIRED, THRUSTER
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def shown(default) -> str:
+    """Return a default value as the table of parameters shows it."""
+    if default is REQUIRED or default is None:
+        return 'required' if default is REQUIRED else '–'
+    if isinstance(default, tuple):
+        return '[' + ', '.join(map(shown, default)) + ']'
+    return f'{default:.5g}' if isinstance(default, float) else str(default).lower()
+
+
+def test_table_of_parameters_equals_the_code():
+    """Each parameter has its row: name, what is allowed, unit, default, meaning; and no other."""
+    expected = {
+        f'| `{one.name}` | {one.type} | {one.unit or "–"} | {shown(one.default)} | {one.meaning} |'
+        for one in (*NODE, *THRUSTER, *MODELS['propeller'], *MODELS['tunnel'])}
+    rows = set(re.findall(r'^\| `.*$', (ROOT / 'doc/parameters.md').read_text('utf-8'), re.M))
+    read_first = {row for row in rows if row.startswith(('| `thruster_names`', '| `model`'))}
+    assert len(read_first) == 2
+    assert rows - read_first == expected
+
+
+def test_quick_start_is_two_blocks_of_one_line():
+    """A newcomer finds two commands to copy, and CI the second one of them."""
+    readme = (ROOT / 'README.md').read_text('utf-8')
+    blocks = re.findall(r'^```bash\n(.*?)^```$', readme, re.M | re.S)
+    assert len(blocks) == 2
+    assert all(block.count('\n') == 1 for block in blocks)
+
+
+def test_architecture_lists_every_module():
+    """The list of modules is complete."""
+    listed = re.findall(r'^\| `(\w+)` \|', (ROOT / 'doc/architecture.md').read_text('utf-8'), re.M)
+    modules = {file.stem for file in (ROOT / 'thrust_allocator').glob('*.py')} - {'__init__'}
+    assert set(listed) == modules

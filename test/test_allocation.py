@@ -74,7 +74,7 @@ def planar_vehicle(columns) -> Vehicle:
         direction = (surge, sway, 0.0) if surge or sway else (0.0, 0.0, 1.0)
         return thruster(f't{i}', (yaw * sway, -yaw * surge, 0.0), direction, (-1e4, 1e4))
     return Vehicle(tuple(one(i, *column) for i, column in enumerate(columns)),
-                   (1e6, 1e6, 0.0, 0.0, 0.0, 1e6), 1025.0)
+                   (1e6, 1e6, 0.0, 0.0, 0.0, 1e6))
 
 
 FOUR_FIXED = ((1, 0, -5), (0, 1, -20), (1, 0, 5), (0, 1, -20))

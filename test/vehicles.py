@@ -58,7 +58,7 @@ def random_vehicle(rng: np.random.Generator, thrusters: int | None = None) -> Ve
     if not wrench_weights.any():
         wrench_weights[0] = 1e3
     return Vehicle(tuple(_random_thruster(rng, i) for i in range(count)),
-                   tuple(wrench_weights.tolist()), 1025.0)
+                   tuple(wrench_weights.tolist()))
 
 
 def _random_thruster(rng: np.random.Generator, index: int) -> Thruster:
@@ -66,7 +66,7 @@ def _random_thruster(rng: np.random.Generator, index: int) -> Thruster:
     if rng.random() < 0.3:  # along an axis, as most real thrusters are: makes B degenerate
         direction = np.eye(3)[rng.integers(3)]
     direction /= np.linalg.norm(direction)
-    loss = (None, TunnelLoss(0.07, rng.uniform(0.3, 7.0)),
+    loss = (None, TunnelLoss(rng.uniform(0.3, 7.0), 1025.0 * 0.07),
             propeller_loss(speed_loss=(rng.uniform(5.0, 30.0), rng.uniform(10.0, 50.0))),
             )[rng.integers(3)]
     reverse = 0.0 if rng.random() < 0.1 else -rng.uniform(20.0, 150.0)

@@ -1,27 +1,23 @@
 """The moving bounds tau_min(v, theta) and tau_max(v, theta) of the allocation problem."""
 
+from collections.abc import Callable
+
 import numpy as np
 from thrust_allocator.flow import FlowAtThrusters
-from thrust_allocator.propeller import PropellerLimits, PropellerLoss
-from thrust_allocator.tunnel import TunnelLimits, TunnelLoss
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.vehicle import Thruster, Vehicle
 
 
 class ThrustBounds:
-    """The thrust limits of a vehicle as a function of its velocity."""
+    """
+    The thrust limits of a vehicle as a function of its velocity.
+
+    Each thruster's law is plain Python on floats: for the handful of thrusters that a vehicle has,
+    this takes a fraction of the time of array operations (doc/performance.md).
+    """
 
     def __init__(self, vehicle: Vehicle) -> None:
-        thrusters = vehicle.thrusters
-        self._flow = FlowAtThrusters(thrusters)
-        self._bollard_thrust = np.abs(vehicle.bollard_thrust)
-        self._propellers = _indices(vehicle, PropellerLoss)
-        self._propeller_limits = PropellerLimits(
-            self._bollard_thrust[:, self._propellers],
-            [thrusters[i].loss for i in self._propellers])
-        self._tunnels = _indices(vehicle, TunnelLoss)
-        self._tunnel_limits = TunnelLimits(
-            self._bollard_thrust[:, self._tunnels],
-            [thrusters[i].loss for i in self._tunnels], vehicle.water_density)
+        self._flow = FlowAtThrusters(vehicle.thrusters)
+        self._laws = [_law(thruster) for thruster in vehicle.thrusters]
 
     def __call__(self, velocity: np.ndarray) -> np.ndarray:
         """
@@ -31,17 +27,12 @@ class ThrustBounds:
             [m/s, rad/s].
         :return: (2, p), row 0 lower (<= 0), row 1 upper (>= 0), within the Bollard limits [N].
         """
-        flow = self._flow(velocity)
-        limits = self._bollard_thrust.copy()  # magnitudes; model 'constant' keeps them
-        if self._propellers.size:
-            limits[:, self._propellers] = self._propeller_limits(
-                flow.speed[self._propellers], flow.angle[self._propellers])
-        if self._tunnels.size:
-            limits[:, self._tunnels] = self._tunnel_limits(flow.transverse[self._tunnels])
-        limits[0] = 0.0 - limits[0]  # not -x, which would make -0.0
-        return limits
+        limits = [law(*flow) for law, flow in zip(self._laws, self._flow(velocity))]
+        return np.array(tuple(zip(*limits)))
 
 
-def _indices(vehicle: Vehicle, loss: type) -> np.ndarray:
-    return np.array([i for i, thruster in enumerate(vehicle.thrusters)
-                     if isinstance(thruster.loss, loss)], dtype=int)
+def _law(thruster: Thruster) -> Callable[[float, float], tuple[float, float]]:
+    """Return the limits of a thruster as a function of its speed along and across its axis."""
+    if thruster.loss is None:
+        return lambda along, across: thruster.bollard_thrust
+    return thruster.loss.law(thruster.bollard_thrust)

@@ -1,43 +1,41 @@
-"""The flow that each thruster meets: how fast, and at what angle of attack."""
+"""The flow that each thruster meets: its speed along and across the thrust axis."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from math import hypot
 
 import numpy as np
 from thrust_allocator.vehicle import Thruster
 
 
-class Flow(NamedTuple):
-    """The water's motion past each of p thrusters, each array (p,)."""
-
-    speed: np.ndarray  # |v_i| [m/s]
-    transverse: np.ndarray  # v_t, the part of it across the thrust axis [m/s]
-    angle: np.ndarray  # theta, angle of attack in [0, pi]: 0 when moving along the thrust axis
-
-
 class FlowAtThrusters:
-    """The map from the vehicle's velocity through the water to the flow at its thrusters."""
+    """
+    The map from the vehicle's velocity through the water to the motion of each thruster.
+
+    Thruster i moves at v_i = v + omega x r_i. That is linear in (v, omega), and so are its
+    components along d_i and two axes across it: one matrix product gives them all.
+    """
 
     def __init__(self, thrusters: Sequence[Thruster]) -> None:
-        # v_i = v + omega x r_i is linear in (v, omega); so are its components along and across d_i
-        identity = np.eye(3)
-        self._along = np.empty((len(thrusters), 6))  # d . v_i
-        self._across = np.empty((3, len(thrusters), 6))  # v_i x d
-        for i, thruster in enumerate(thrusters):
-            r, d = np.array(thruster.position), np.array(thruster.direction)
-            velocity = np.hstack([identity, np.cross(identity, r).T])  # (3, 6): v + omega x r
-            self._along[i] = d @ velocity
-            self._across[:, i] = np.cross(velocity.T, d).T
+        self._components = np.vstack([_components(thruster) for thruster in thrusters])
 
-    def __call__(self, velocity: np.ndarray) -> Flow:
+    def __call__(self, velocity: np.ndarray) -> list[tuple[float, float]]:
         """
-        Return the flow at the thrusters.
+        Return how each thruster moves through the water.
+
+        The angle of attack is atan2(across, along).
 
         :param velocity: (6,) velocity of the body origin through the water and turn rate, frd axes
             [m/s, rad/s].
+        :return: for each thruster its speed along its thrust axis and, >= 0, across it [m/s].
         """
-        along = self._along @ velocity
-        across = self._across @ velocity
-        transverse = np.sqrt((across * across).sum(axis=0))
-        # atan2, because arccos of the normalised product is noisy near 0 and pi
-        return Flow(np.hypot(along, transverse), transverse, np.arctan2(transverse, along))
+        flat = (self._components @ velocity).tolist()
+        return [(along, hypot(one, other))
+                for along, one, other in zip(flat[0::3], flat[1::3], flat[2::3])]
+
+
+def _components(thruster: Thruster) -> np.ndarray:
+    """Return the (3, 6) map from (v, omega) to v_i along d_i and along two axes across it."""
+    identity = np.eye(3)
+    velocity = np.hstack([identity, np.cross(identity, thruster.position).T])  # v + omega x r_i
+    axes = np.linalg.svd(np.array([thruster.direction]))[2]  # rows: +d or -d, and two across it
+    return np.vstack([thruster.direction, axes[1:]]) @ velocity

@@ -230,8 +230,11 @@ def main(args: Sequence[str] | None = None) -> int:
         if not files:
             default = str(default_parameter_file())
             args[1:1] = ['--ros-args', '--params-file', default, '--']
+        # What rcl logs of a mistake in the arguments stands in its exception too
+        rclpy.logging.set_logger_level('rcl', rclpy.logging.LoggingSeverity.FATAL)
         # rclpy's own handlers would end the context before the last zeros are out
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.logging.set_logger_level('rcl', rclpy.logging.LoggingSeverity.UNSET)
         node = ThrustAllocator(parameter_overrides=_command_line_parameters(args))
     except (ParameterError, ParameterException, RuntimeError) as error:
         print(f'{NODE_NAME}: {" ".join(str(error).split())}', file=sys.stderr)

@@ -1,43 +1,39 @@
-"""Thrust limits of tunnel thrusters at speed: Kostenko and Tolstonogov (2017), eq. 3.12, 3.13."""
+"""Thrust limits of a tunnel thruster at speed: Kostenko and Tolstonogov (2017), eq. 3.12, 3.13."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-
-import numpy as np
+from math import exp
+from typing import Any
 
 
 @dataclass(frozen=True)
 class TunnelLoss:
     """How a tunnel thruster loses thrust when the vehicle moves across its jet."""
 
-    area: float  # S, cross-section of the jet [m^2]; only the product decay * area matters
     decay: float  # c; published values are 0.3 to 4 (Palmer et al. 2008) [-]
+    jet_mass: float  # rho S, mass of a metre of the jet [kg/m]; only its product with c matters
 
+    @classmethod
+    def from_parameters(cls, name: str, values: Mapping[str, Any]) -> 'TunnelLoss':
+        """Build it from the checked parameters of a thruster and the water's density."""
+        return cls(values['decay'], values['water_density'] * values['area'])
 
-class TunnelLimits:
-    """The limits of n tunnel thrusters as a function of the flow, for both senses of thrust."""
-
-    def __init__(self, bollard_thrust: np.ndarray, losses: Sequence[TunnelLoss],
-                 water_density: float) -> None:
+    def law(self, bollard_thrust: tuple[float, float]) -> Callable[
+            [float, float], tuple[float, float]]:
         """
-        Gather the coefficients.
+        Return the limits T_0 exp(-c v_t^2 / v_jet^2), v_jet^2 = T_0 / (rho S), as a function.
 
-        :param bollard_thrust: (2, n) magnitudes, row 0 reverse, row 1 forward [N].
-        :param losses: the n tunnels' coefficients.
-        :param water_density: [kg/m^3].
+        :param bollard_thrust: limits at rest (reverse <= 0, forward >= 0) [N].
+        :return: function of the thruster's speed along its thrust axis, which does not matter, and
+            v_t across it [m/s], that gives (lower <= 0, upper >= 0) [N].
         """
-        self._bollard_thrust = bollard_thrust
-        decay_area = np.array([loss.decay * loss.area for loss in losses])
-        # c / v_jet^2 with v_jet^2 = T_0 / (rho S); a sense without thrust has none to lose
-        self._exponent = np.divide(
-            -water_density * decay_area, bollard_thrust,
-            out=np.zeros_like(bollard_thrust), where=bollard_thrust > 0.0)  # [s^2/m^2]
+        reverse, forward = bollard_thrust
+        decay_mass = self.decay * self.jet_mass  # c rho S [kg/m]
 
-    def __call__(self, transverse: np.ndarray) -> np.ndarray:
-        """
-        Return the limits T_0 exp(-c v_t^2 / v_jet^2) in the given flow.
+        def limits(along: float, across: float) -> tuple[float, float]:
+            load = decay_mass * across * across  # c rho S v_t^2 [N]
+            # A sense without thrust has none to lose
+            return (reverse * exp(load / reverse) if reverse else 0.0,
+                    forward * exp(-load / forward) if forward else 0.0)
 
-        :param transverse: (n,) speed of the flow across the thrust axis, v_t [m/s].
-        :return: (2, n) magnitudes, row 0 reverse, row 1 forward [N].
-        """
-        return self._bollard_thrust * np.exp(self._exponent * transverse**2)
+        return limits

@@ -37,19 +37,15 @@ class Vehicle:
 
     thrusters: tuple[Thruster, ...]
     wrench_weights: tuple[float, ...]  # R of surge ... yaw; 0: not controlled
-    water_density: float  # [kg/m^3]
 
     @classmethod
     def from_parameters(cls, parameters: Parameters) -> 'Vehicle':
         """Build the vehicle that checked parameters describe, turned into frd axes."""
         values = parameters.values
-        axes = tuple(frd_signs(values['vehicle_frame'])[:3])
-        density = values['water_density']
         return cls(
-            tuple(_thruster(name, parameters.of_thruster(name), axes, density)
+            tuple(_thruster(name, {**values, **parameters.of_thruster(name)})
                   for name in values['thruster_names']),
-            tuple(values[f'wrench_weights.{dof}'] for dof in DOFS),
-            density)
+            tuple(values[f'wrench_weights.{dof}'] for dof in DOFS))
 
     @cached_property
     def configuration_matrix(self) -> np.ndarray:
@@ -85,18 +81,18 @@ class Vehicle:
         return found
 
 
-def _thruster(name: str, values: Mapping[str, Any], axes: tuple[float, ...],
-              water_density: float) -> Thruster:
-    loss = None
-    if values['model'] == 'propeller':
-        loss = PropellerLoss.from_parameters(values, water_density)
-    elif values['model'] == 'tunnel':
-        loss = TunnelLoss(values['area'], values['decay'])
-    return Thruster(
-        name,
-        tuple(float(sign * x) for sign, x in zip(axes, values['position'])),
-        tuple(float(sign * x) for sign, x in zip(axes, values['direction'])),
-        values['bollard_thrust'], values['weight'], values['torque_ratio'], loss)
+_LOSSES = {'propeller': PropellerLoss.from_parameters,
+           'tunnel': TunnelLoss.from_parameters,
+           'constant': lambda name, values: None}
+
+
+def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
+    """Build a thruster from its own parameters and those of the node."""
+    signs = frd_signs(values['vehicle_frame'])[:3]
+    position, direction = (tuple((signs * values[key]).tolist())
+                           for key in ('position', 'direction'))
+    return Thruster(name, position, direction, values['bollard_thrust'], values['weight'],
+                    values['torque_ratio'], _LOSSES[values['model']](name, values))
 
 
 def _frozen(array: np.ndarray) -> np.ndarray:

@@ -4,6 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
+CACHED_SETS = 256  # a vehicle meets a few dozen; bounded, because p thrusters have 3^p
+ROUNDING = 1e-10  # a bound hinders a thruster by more than this share of the largest thrust
+
 
 class ActiveSet:
     """
@@ -11,14 +14,15 @@ class ActiveSet:
 
     minimise 1/2 (x^T Q x + (B x - f)^T R (B x - f))  subject to  lower <= x <= upper
 
-    For a given set of thrusters held at a bound the rest follows from the wrench multiplier
-    lambda = R (f - B x): each free thruster gives x_i = b_i^T lambda / q_i, and lambda solves a
-    system of no more than 6 equations however many thrusters there are.
+    Hold some thrusters at a bound. What each thruster would give if its own bound did not count is
+    then linear in f and in the bounds of those held, by matrices that are computed once per set.
+    If those held would go beyond their bound and the others would not, the set is the optimum's.
+    From one tick to the next it rarely changes, and then confirming it is all.
 
-    The method steps from a feasible point towards the optimum of the current set, holds the first
-    thruster that meets a bound on the way, and once none does, frees the one whose bound hinders
-    most (Nocedal and Wright, Numerical Optimization, 2006, section 16.5). The cost falls at every
-    step, so it ends; from one tick to the next the set rarely changes, and then one step is all.
+    Where it changes, the method steps from a feasible point towards the optimum of the present
+    set, holds the first thruster that meets a bound on the way, and once none does, frees the one
+    whose bound hinders most (Nocedal and Wright, Numerical Optimization, 2006, section 16.5). The
+    cost falls at every step, so it ends.
     """
 
     def __init__(self, matrix: np.ndarray, thrust_weights: np.ndarray,
@@ -31,65 +35,78 @@ class ActiveSet:
         :param wrench_weights: diagonal of R, (m,), > 0.
         """
         self._matrix = matrix
-        self._thrust_weights = thrust_weights
-        self._compliance = 1.0 / wrench_weights
-        self._per_multiplier = matrix / thrust_weights  # thrust wanted per unit of lambda, (m, p)
+        self._per_multiplier = matrix / thrust_weights
+        self._compliance = np.diag(1.0 / wrench_weights)
         self._sides = np.zeros(len(thrust_weights), dtype=np.int8)  # -1 lower, 0 free, +1 upper
-        self._thrusts = np.zeros(len(thrust_weights))
-        self._response = lru_cache(maxsize=256)(self._compute_response)
+        self._response = lru_cache(maxsize=CACHED_SETS)(self._compute_response)
 
-    def solve(self, wrench: np.ndarray, lower: np.ndarray,
-              upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def solve(self, wrench: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """
-        Return the optimal thrusts and the multipliers of their bounds.
+        Return what each thruster would give at the optimum if its own bound did not count.
 
         :param wrench: f over the controlled DOFs, (m,).
-        :param lower: (p,) bounds, in the unit of the result.
-        :param upper: (p,) bounds, not below `lower`.
-        :return: thrusts (p,), inside the bounds exactly, and multipliers (p,): > 0 at the upper,
-            < 0 at the lower bound, 0 between. Feasible but not optimal in the rare case that
-            rounding keeps the method from ending within 20 + 10 p steps.
+        :param limits: (2, p), row 0 lower, row 1 upper, not below it.
+        :return: (p,); cut to the limits it is the optimum. In the rare case that rounding keeps
+            the method from ending in 20 + 10 p steps, cut to the limits it is only near it.
         """
+        wanted = self._wanted(wrench, limits, self._sides)
+        sides = _sides(wanted, limits)
+        if sides.tobytes() != self._sides.tobytes():
+            wanted = self._search(wrench, limits, wanted, sides)
+            self._sides = _sides(wanted, limits)
+        return wanted
+
+    def _search(self, wrench: np.ndarray, limits: np.ndarray, wanted: np.ndarray,
+                sides: np.ndarray) -> np.ndarray:
+        """Return what `solve` does, starting from the feasible point next to `wanted`."""
+        lower, upper = limits
+        thrusts = np.clip(wanted, lower, upper)
         fixed = lower >= upper
-        sides = np.where(fixed, np.int8(-1), self._sides)
-        thrusts = np.where(sides > 0, upper, np.where(sides < 0, lower, self._thrusts))
-        thrusts = np.minimum(np.maximum(thrusts, lower), upper)
+        sides = np.where(fixed, np.int8(1), sides)
         for _ in range(20 + 10 * len(thrusts)):
-            wanted = self._wanted(wrench, thrusts, sides)
-            free = sides == 0
-            step = np.where(free, wanted - thrusts, 0.0)
+            wanted = self._wanted(wrench, limits, sides)
+            step = np.where(sides == 0, wanted - thrusts, 0.0)
             first, share = _first_blocked(thrusts, step, lower, upper)
             if share < 1.0:
                 sides[first] = 1 if step[first] > 0.0 else -1
-                thrusts = thrusts + share * step
+                thrusts += share * step
                 thrusts[first] = upper[first] if step[first] > 0.0 else lower[first]
                 continue
-            thrusts = np.where(free, wanted, thrusts)
+            thrusts += step
             hindered = np.where(fixed, 0.0, sides * (thrusts - wanted))
             most = hindered.argmax()
-            if hindered[most] <= 1e-10 * (1.0 + np.abs(thrusts).max()):
+            if hindered[most] <= ROUNDING * np.abs(thrusts).max():
                 break
             sides[most] = 0
-        thrusts = np.minimum(np.maximum(thrusts, lower), upper)
-        self._sides, self._thrusts = sides, thrusts
-        return thrusts, np.where(sides == 0, 0.0, self._thrust_weights * (wanted - thrusts))
+        return wanted
 
-    def _wanted(self, wrench: np.ndarray, thrusts: np.ndarray, sides: np.ndarray) -> np.ndarray:
-        """Return what each thruster would give without its bound, the others' sides held: (p,)."""
-        free = sides == 0
-        response = self._response(free.tobytes())
-        rest = wrench - self._matrix @ np.where(free, 0.0, thrusts)
-        multiplier = response @ rest
-        # One step of iterative refinement makes up for using an inverse
-        given = np.where(free, multiplier @ self._per_multiplier, 0.0)
-        multiplier += response @ (rest - self._compliance * multiplier - self._matrix @ given)
-        return multiplier @ self._per_multiplier
+    def _wanted(self, wrench: np.ndarray, limits: np.ndarray, sides: np.ndarray) -> np.ndarray:
+        held, to_wrench, to_bounds = self._response(sides.tobytes())
+        return to_wrench @ wrench - to_bounds @ limits.take(held)
 
-    def _compute_response(self, free: bytes) -> np.ndarray:
-        """Return the (m, m) inverse of R^-1 + B_F Q_F^-1 B_F^T for a set F of free thrusters."""
-        free = np.frombuffer(free, dtype=bool)
-        stiffness = self._per_multiplier[:, free] @ self._matrix[:, free].T
-        return np.linalg.inv(np.diag(self._compliance) + stiffness)
+    def _compute_response(self, sides: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """
+        Return how the unbounded thrusts respond while some thrusters are held at a bound.
+
+        Each free thruster gives b_i^T lambda / q_i, where the multiplier lambda = R (f - B x) of
+        the wrench solves (R^-1 + B_F Q_F^-1 B_F^T) lambda = f - B_H x_H over the free thrusters F
+        and those held H: six equations at most, however many thrusters there are.
+
+        :param sides: bytes of the (p,) array of -1, 0 and 1.
+        :return: indices (h,) of the bounds that hold into the flat limits, the response (p, m) to
+            f, and (p, h) to those bounds, to be taken off.
+        """
+        sides = np.frombuffer(sides, dtype=np.int8)
+        free, held = np.flatnonzero(sides == 0), np.flatnonzero(sides)
+        system = self._compliance + self._per_multiplier[:, free] @ self._matrix[:, free].T
+        to_wrench = np.linalg.solve(system, self._per_multiplier).T.copy()
+        in_limits = held + len(sides) * (sides[held] > 0)
+        return in_limits, to_wrench, to_wrench @ self._matrix[:, held]
+
+
+def _sides(wanted: np.ndarray, limits: np.ndarray) -> np.ndarray:
+    """Return for each thruster which limit `wanted` lies beyond: -1, 0 or 1, as int8."""
+    return (wanted > limits[1]).view(np.int8) - (wanted < limits[0]).view(np.int8)
 
 
 def _first_blocked(thrusts: np.ndarray, step: np.ndarray, lower: np.ndarray,

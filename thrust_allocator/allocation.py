@@ -61,6 +61,7 @@ class AllocationProblem:
         smallest = thrust_weights.min()
         thrust_weights = thrust_weights / smallest
         wrench_weights = np.array(vehicle.wrench_weights)[self._controlled] / smallest
+        self._thrust_weights = thrust_weights
         self._active_set = ActiveSet(matrix, thrust_weights, wrench_weights)
 
         # L^T by QR, which does not square the condition number as factorising P itself would
@@ -101,17 +102,19 @@ class AllocationProblem:
         """
         lower, upper = limits
         command = wrench[self._controlled]
-        thrusts, multipliers = self._active_set.solve(command, lower, upper)
+        wanted = self._active_set.solve(command, limits)
+        thrusts = np.minimum(np.maximum(wanted, lower), upper)
+        multipliers = self._thrust_weights * (wanted - thrusts)
         self._solver.update(q=self._gradient @ command, l=lower, u=upper)
         self._solver.warm_start(x=self._factor @ thrusts, y=multipliers)
         result = self._solver.solve(raise_error=False)
-        if result.info.status == 'solved':
+        if result.info.status == 'solved' and result.info.iter > 1:  # the start was not it
             multipliers = result.y
-            thrusts = self._thrusts @ result.x
-        at_bound = ((multipliers > self._tolerance).astype(np.int8)
-                    - (multipliers < -self._tolerance))
-        thrusts = np.where(at_bound > 0, upper, np.where(at_bound < 0, lower, thrusts))
-        thrusts = np.minimum(np.maximum(thrusts, lower), upper)
+            wanted = self._thrusts @ result.x + multipliers / self._thrust_weights
+            thrusts = np.minimum(np.maximum(wanted, lower), upper)
         achieved = self._matrix @ thrusts
-        return Allocation(thrusts, limits, achieved, wrench - achieved, at_bound,
-                          result.info.status, result.info.iter)
+        return Allocation(
+            thrusts, limits, achieved, wrench - achieved,
+            (multipliers > self._tolerance).view(np.int8)
+            - (multipliers < -self._tolerance).view(np.int8),
+            result.info.status, result.info.iter)

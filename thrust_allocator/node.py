@@ -25,11 +25,10 @@ from thrust_allocator.allocation import Allocation, AllocationProblem
 from thrust_allocator.bounds import ThrustBounds
 from thrust_allocator.frames import frd_signs
 from thrust_allocator.parameter_file import (
-    check_parameter_file, default_parameter_file, NODE_NAME)
+    check_parameter_file, command_line_values, default_parameter_file, NODE_NAME)
 from thrust_allocator.parameter_types import ParameterError
 from thrust_allocator.parameters import Parameters, read_parameters
 from thrust_allocator.vehicle import Vehicle
-import yaml
 
 # Best effort and depth 1 meet any publisher, and only the newest message counts
 INPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -84,7 +83,12 @@ class ThrustAllocator(Node):
         simulated = self.get_parameter('use_sim_time').value
         self._tick_clock = self.get_clock() if simulated else Clock(
             clock_type=ClockType.STEADY_TIME)
-        self._timer = self.create_timer(1.0 / values['rate'], self._tick, clock=self._tick_clock)
+        try:
+            self._timer = self.create_timer(
+                1.0 / values['rate'], self._tick, clock=self._tick_clock)
+        except OverflowError:
+            raise ParameterError.wrong(
+                'rate', values['rate'], 'large enough for its period to fit a clock') from None
 
     def _declare_vehicle(self) -> Parameters:
         """Take the overrides, check them, and declare every parameter with its value in effect."""
@@ -235,7 +239,9 @@ def main(args: Sequence[str] | None = None) -> int:
         # rclpy's own handlers would end the context before the last zeros are out
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         rclpy.logging.set_logger_level('rcl', rclpy.logging.LoggingSeverity.UNSET)
-        node = ThrustAllocator(parameter_overrides=_command_line_parameters(args))
+        # rcl drops a value from the command line if a file gives one of another type
+        node = ThrustAllocator(parameter_overrides=[
+            Parameter(name, value=value) for name, value in command_line_values(args).items()])
     except (ParameterError, ParameterException, RuntimeError) as error:
         print(f'{NODE_NAME}: {" ".join(str(error).split())}', file=sys.stderr)
         rclpy.try_shutdown()
@@ -254,14 +260,6 @@ def main(args: Sequence[str] | None = None) -> int:
             node.stop()
         rclpy.try_shutdown()
     return 0
-
-
-def _command_line_parameters(args: Sequence[str]) -> list[Parameter]:
-    """Return what `-p name:=value` sets: rcl drops it when a file gives a value of another type."""
-    rules = [rule.split(':=', 1) for option, rule in zip(args, args[1:])
-             if option in ('-p', '--param') and ':=' in rule]
-    return [Parameter(name, value=yaml.safe_load(value))
-            for name, value in rules if ':' not in name]  # a rule for one node is left to rcl
 
 
 if __name__ == '__main__':

@@ -1,19 +1,27 @@
 """Read the parameters of one node from a ROS 2 parameter file, without ROS."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 import re
 import sysconfig
 from typing import Any
 
-from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.parameter_types import is_exponent, ParameterError, shown
 import yaml
 
 NODE_NAME = 'thrust_allocator'
 
 
 class _Loader(yaml.SafeLoader):
-    """A safe loader that refuses a key given twice, where PyYAML would keep the last one."""
+    """A safe loader that refuses what ROS 2 does, and a key given twice, which PyYAML drops."""
+
+    def compose_node(self, parent: yaml.Node | None, index: object) -> yaml.Node | None:
+        """Build the next node, unless it is an alias, which ROS 2 does not know."""
+        if self.check_event(yaml.AliasEvent):
+            event = self.peek_event()
+            raise yaml.composer.ComposerError(
+                None, None, f'ROS 2 has no aliases such as *{event.anchor}', event.start_mark)
+        return super().compose_node(parent, index)
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         """Build the mapping of `node`, unless one of its keys stands twice."""
@@ -59,22 +67,37 @@ def check_parameter_file(path: str | Path) -> list[tuple[str, dict[str, Any]]]:
         that ROS 2 cannot take.
     """
     try:
-        with open(path, encoding='utf-8') as file:
-            document = yaml.load(file, _Loader)
-        return list(_sections(document, '', str(path)))
+        text = Path(path).read_bytes()
     except OSError as error:
         raise ParameterError(f'{path}: cannot be read: {error.strerror}') from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise ParameterError(f'{path}: is not valid YAML: {_one_line(error)}') from None
+    return list(_sections(_load(text, str(path)), '', str(path)))
 
 
-def _one_line(error: Exception) -> str:
-    mark = getattr(error, 'problem_mark', None)
-    where = f' in line {mark.line + 1}' if mark else ''
-    problem = getattr(error, 'problem', None) or str(error) or type(error).__name__
-    return ' '.join(problem.split()) + where
+def command_line_values(args: Sequence[str]) -> dict[str, Any]:
+    """
+    Return what `-p name:=value` on the command line sets, by full dotted name.
+
+    :param args: the command line; a rule for one node among several (`-p node:name:=value`) is
+        passed over.
+    :raises ParameterError: for a value that ROS 2 cannot take.
+    """
+    values = {}
+    for option, rule in zip(args, args[1:]):
+        name, separator, text = rule.partition(':=')
+        if option in ('-p', '--param') and separator and ':' not in name:
+            values[name] = _load(text, name)
+            _check_value(name, values[name])
+    return values
+
+
+def _load(text: str | bytes, source: str) -> Any:
+    try:
+        return yaml.load(text, _Loader)
+    except Exception as error:  # of nearly any type: PyYAML's constructors take much for granted
+        mark = getattr(error, 'problem_mark', None)
+        where = f' in line {mark.line + 1}' if mark else ''
+        problem = getattr(error, 'problem', None) or str(error) or type(error).__name__
+        raise ParameterError(f'{source}: is not valid YAML: {problem}{where}') from None
 
 
 def _sections(document: Any, prefix: str, path: str) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -104,19 +127,14 @@ def _flat(content: dict, prefix: str) -> Iterator[tuple[str, Any]]:
 def _check_value(name: str, value: Any) -> None:
     """Refuse what ROS 2's own parser refuses, but by name: null, dates, and lists not of a kind."""
     items = value if isinstance(value, list) else [value]
-    kinds = {float if _is_real(item) else type(item) for item in items}
+    kinds = {float if is_exponent(item) else type(item) for item in items}
     if kinds == {int, float}:
-        raise ParameterError(f'{name}: is {value}, mixes whole and real numbers, which ROS 2 does '
-                             'not allow: must be written with decimals throughout, as in 2.0')
+        raise ParameterError(
+            f'{name}: is {shown(value)}, mixes whole and real numbers, which ROS 2 does not allow: '
+            'must be written with decimals throughout, as in 2.0')
     if len(kinds) != 1 or not kinds <= {bool, int, float, str}:
         allowed = 'a value or a list of values of one type: numbers, words, or true and false'
         raise ParameterError.wrong(name, value, allowed)
-
-
-def _is_real(item: Any) -> bool:
-    # 1.0e4 is a number to ROS 2, but to PyYAML, for want of a sign, a string
-    return isinstance(item, float) or isinstance(item, str) and bool(
-        re.fullmatch(r'[-+]?[0-9]*\.?[0-9]*[eE][-+]?[0-9]+', item))
 
 
 def _matches(pattern: str, node: str) -> bool:

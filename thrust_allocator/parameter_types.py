@@ -13,10 +13,22 @@ _NAME = re.compile(r'[a-z][a-z0-9_]*')
 class ParameterError(ValueError):
     """A mistake in a vehicle's description; the message is one line and names the parameter."""
 
+    def __init__(self, message: str) -> None:
+        """Keep the message, on one line even if what it quotes is not."""
+        super().__init__(' '.join(message.split()))
+
     @classmethod
     def wrong(cls, name: str, value: object, allowed: object) -> 'ParameterError':
         """Build the usual message: which parameter, what it is, what it must be."""
-        return cls(f'{name}: is {_short.repr(value)}, must be {allowed}')
+        return cls(f'{name}: is {shown(value)}, must be {allowed}')
+
+
+def shown(value: object) -> str:
+    """Return `value` as an error shows it: as Python writes it, but never long."""
+    try:
+        return _short.repr(value)
+    except ValueError:  # a whole number of thousands of digits, which Python refuses to write
+        return 'a very large number'
 
 
 _short = reprlib.Repr()
@@ -52,11 +64,14 @@ class Real:
         return number
 
 
+def is_exponent(value: object) -> bool:
+    """Tell a number such as 1.0e4, which PyYAML and `ros2 param set` take for a word."""
+    return isinstance(value, str) and bool(re.fullmatch(
+        r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+', value))
+
+
 def _real(value: object) -> float:
-    # PyYAML and `ros2 param set` take 1.0e4 for a string, because YAML 1.1 wants a sign there.
-    if isinstance(value, str) and re.fullmatch(r'[-+]?[0-9.]+([eE][-+]?[0-9]+)?', value):
-        return float(value)
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if isinstance(value, bool) or not (isinstance(value, (int, float)) or is_exponent(value)):
         raise ValueError
     return float(value)
 
@@ -162,7 +177,7 @@ class Names:
         for item in value:
             if not isinstance(item, str) or not _NAME.fullmatch(item):
                 raise ParameterError(
-                    f'{name}: has the entry {_short.repr(item)}, must be {self}')
+                    f'{name}: has the entry {shown(item)}, must be {self}')
         for item in value:
             if list(value).count(item) > 1:
                 raise ParameterError(f'{name}: has {item!r} twice, must be {self}')
@@ -177,13 +192,15 @@ class NotBuilt:
     off: float | bool | tuple[float, ...] | None = None  # the value that asks for no effect
 
     def __str__(self) -> str:
-        return 'left out' if self.off is None else f'{self.off} or left out'.lower()
+        if self.off is None:
+            return 'left out'
+        off = list(self.off) if isinstance(self.off, tuple) else self.off
+        return f'{off} or left out'.lower()
 
     def read(self, name: str, value: object) -> object:
         """Return `value` if it asks for no effect; otherwise raise ParameterError."""
-        if isinstance(value, Sequence) and not isinstance(value, str):
-            value = tuple(value)
-        if self.off is None or value != self.off or isinstance(value, bool) != isinstance(
+        given = tuple(value) if isinstance(value, list) else value
+        if self.off is None or given != self.off or isinstance(given, bool) != isinstance(
                 self.off, bool):
             raise ParameterError.wrong(name, value, f'{self}: {self.effect} not built yet')
         return self.off

@@ -1,6 +1,6 @@
 """Every parameter of a vehicle: name, type, default, unit and meaning; and how they are read."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 import difflib
 import math
@@ -136,11 +136,11 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
             definitions[prefix + parameter.name] = parameter
 
     warnings = []
-    for name in given.keys() - definitions.keys():
-        message = f'{name}: is no parameter here{_nearest(name, definitions)}'
-        if name.startswith(('thrusters.', 'wrench_weights.')) or name == 'wrench_weights':
-            raise ParameterError(message)
-        warnings.append(f'{message}; it is ignored')
+    for name in [name for name in given if name not in definitions]:
+        mistake = ParameterError(f'{name}: is no parameter here{_nearest(name, definitions)}')
+        if name.split('.')[0] in ('thrusters', 'wrench_weights'):
+            raise mistake
+        warnings.append(f'{mistake}; it is ignored')
     values = {name: _read(given, name, parameter) for name, parameter in definitions.items()}
     _check_together(values, thrusters)
     return Parameters(MappingProxyType(values), MappingProxyType(definitions),
@@ -170,8 +170,7 @@ def _coefficients(given: Mapping[str, Any], prefix: str, model: str) -> tuple[Pa
     """Return the model's own parameters; of speed_loss and propeller the one that was given."""
     if model != 'propeller':
         return MODELS[model]
-    propeller = [name for name in given if name.startswith(prefix + 'propeller')]
-    if not propeller:
+    if not any(name.startswith(f'{prefix}propeller.') for name in given):
         if prefix + 'speed_loss' not in given:
             raise ParameterError(f'{prefix}speed_loss: is missing, must be {_SPEED_LOSS.type}; '
                                  f'or give {prefix}propeller instead')
@@ -193,6 +192,11 @@ def _check_together(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> No
                 '[reverse, forward] with forward > 0 where propeller is given; or give speed_loss')
 
 
-def _nearest(name: str, known: Any) -> str:
-    close = difflib.get_close_matches(name, list(known), n=1)
-    return f'; did you mean {close[0]}?' if close else ''
+def _nearest(name: str, known: Iterable[str]) -> str:
+    """Ask whether the most similar known name was meant: of the same group if there is one."""
+    group, _, last = name.rpartition('.')
+    siblings = {one.rpartition('.')[2]: one for one in known if one.rpartition('.')[0] == group}
+    for candidate, names in ((last, siblings), (name, {one: one for one in known})):
+        for close in difflib.get_close_matches(candidate, names, n=1):
+            return f'; did you mean {names[close]}?'
+    return ''

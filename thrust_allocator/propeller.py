@@ -76,11 +76,11 @@ class PropellerLoss:
             first = max(pi / 2 - first_slope * speed, first_min)
             second = min(max(second_start + second_slope * speed, first),
                          SECOND_CRITICAL_ANGLE_MAX)
-            return (
-                0.0 - _limit(reverse, pi - angle, first, second, reverse_loss * speed,
-                        min(reverse_opposed * speed, most_reverse)),
-                _limit(forward, angle, first, second, forward_loss * speed,
-                       min(forward_opposed * speed, most_forward)))
+            lower = _limit(reverse, pi - angle, first, second, reverse_loss * speed,
+                           min(reverse_opposed * speed, most_reverse))
+            upper = _limit(forward, angle, first, second, forward_loss * speed,
+                           min(forward_opposed * speed, most_forward))
+            return 0.0 - lower, upper  # -lower could be -0.0
 
         return limits
 

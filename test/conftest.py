@@ -1,0 +1,45 @@
+"""Shared by all tests: an environment that nothing leaves, and variants of MT-2012's file."""
+
+import copy
+import os
+from pathlib import Path
+import tempfile
+
+import pytest
+import yaml
+
+# Before any rclpy: in-process traffic stays inside its Context, logs go where they are deleted
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+os.environ.pop('ROS_LOCALHOST_ONLY', None)  # would override it
+_LOGS = tempfile.TemporaryDirectory(prefix='thrust_allocator_test_')
+os.environ['ROS_LOG_DIR'] = _LOGS.name
+
+MT2012 = Path(__file__).resolve().parent.parent / 'config' / 'mt2012.yaml'
+
+
+@pytest.fixture
+def mt2012():
+    """Return the path of MT-2012's parameter file."""
+    return MT2012
+
+
+@pytest.fixture
+def variant(tmp_path):
+    """Return a function that writes MT-2012's file with changes and returns its path."""
+    original = yaml.safe_load(MT2012.read_text(encoding='utf-8'))['/**']['ros__parameters']
+
+    def write(changes, top_key='/**'):
+        """Set what `changes` gives by dotted name, under the top key `top_key`."""
+        parameters = copy.deepcopy(original)
+        for name, value in changes.items():
+            *groups, last = name.split('.')
+            place = parameters
+            for group in groups:
+                place = place[group]
+            place[last] = value
+        path = tmp_path / 'vehicle.yaml'
+        path.write_text(yaml.safe_dump({top_key: {'ros__parameters': parameters}}),
+                        encoding='utf-8')
+        return path
+
+    return write

@@ -1,0 +1,179 @@
+"""A peer of the node: stands for its controller, its odometry and its motor drivers."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+import time
+from typing import Any, NamedTuple
+
+from geometry_msgs.msg import Wrench
+from nav_msgs.msg import Odometry
+import numpy as np
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Float64MultiArray
+from thrust_allocator.node import twist_components, wrench_components
+
+TYPES_IN = {'cmd_wrench': Wrench, 'odom': Odometry}
+TYPES_OUT = {  # in the order of publication
+    'thrust_limits': Float64MultiArray, 'thruster_setpoints': Float64MultiArray,
+    'achieved_wrench': Wrench, 'unallocated_wrench': Wrench}
+
+# The paper's test, physics.md section 6: 40 v^2 N of surge and 50 N*m of pitch, straight ahead.
+# Speed, (down, left, up, right, tunnel), limits of the stern thrusters, upper limit of the tunnel,
+# pitch and heave achieved, frd axes [m/s, N, N*m].
+ORACLE = (
+    (0.0, (-25.74, 0.00, 25.74, 0.00, -19.92), (-68.2, 120.1), 122.1, 50.00, -0.22),
+    (0.3, (-24.77, 0.97, 26.71, 0.97, -19.92), (-66.4, 112.5), 84.0, 50.00, -0.22),
+    (0.5, (-23.03, 2.71, 28.45, 2.71, -19.92), (-65.3, 107.6), 43.2, 50.00, -0.22),
+    (0.7, (-25.13, 5.30, 35.73, 5.30, -15.90), (-64.2, 102.9), 15.9, 49.94, 7.39),
+    (0.9, (-35.34, 8.77, 52.88, 8.77, -4.20), (-63.1, 98.4), 4.2, 49.77, 29.56),
+    (1.2, (-33.08, 15.59, 64.25, 15.59, -0.31), (-62.5, 92.1), 0.3, 49.71, 36.94),
+    (1.5, (-24.66, 24.35, 73.37, 24.35, -0.01), (-62.7, 86.3), 0.0, 49.71, 37.50),
+    (1.8, (-16.86, 37.97, 81.19, 37.97, 0.00), (-63.0, 81.2), 0.0, 49.71, 37.52))
+
+
+class Received(NamedTuple):
+    """One message, as it came."""
+
+    topic: str
+    message: Any
+    values: np.ndarray  # the array, or force and torque, in the message's own axes
+    sent: int  # when it was published, by its publisher [ns]
+
+
+@contextmanager
+def ros_context(*arguments: str, domain_id: int | None = None) -> Iterator[rclpy.Context]:
+    """Open a Context of its own with ROS arguments, and shut it down."""
+    context = rclpy.Context()
+    rclpy.init(args=['test', '--ros-args', *arguments], context=context, domain_id=domain_id)
+    try:
+        yield context
+    finally:
+        context.try_shutdown()
+
+
+class Peer(Node):
+    """Sends wrench and twist anew at every tick, and records all that the allocator says."""
+
+    def __init__(self, context: rclpy.Context, *,
+                 reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE,
+                 beside: Node | None = None, name: str = 'peer') -> None:
+        """
+        Meet the allocator by the relative names of its topics.
+
+        :param reliability: of the publishers and the subscriptions.
+        :param beside: a node to spin together with this one; of a Peer, its executor is shared.
+        """
+        super().__init__(name, context=context)
+        self.received: list[Received] = []
+        self.wrench: np.ndarray | None = None  # sent at every tick, message axes; None: not sent
+        self.twist: np.ndarray | None = None
+        self.on_tick: Callable[[], None] = self.send
+        qos = QoSProfile(depth=1000, reliability=reliability)
+        self._inputs = {topic: self.create_publisher(kind, topic, qos)
+                        for topic, kind in TYPES_IN.items()}
+        for topic, kind in TYPES_OUT.items():
+            self.create_subscription(kind, topic, self._recorder(topic), qos)
+        self.spinner = beside.spinner if isinstance(beside, Peer) else SingleThreadedExecutor(
+            context=context)
+        for node in (self, beside):
+            if node is not None:
+                self.spinner.add_node(node)
+
+    def _recorder(self, topic: str) -> Callable[[Any, dict], None]:
+        def record(message: Any, info: dict) -> None:
+            wrench = isinstance(message, Wrench)
+            values = wrench_components(message) if wrench else np.array(message.data)
+            self.received.append(Received(topic, message, values, info['source_timestamp']))
+            if topic == 'unallocated_wrench':
+                self.on_tick()
+        return record
+
+    @property
+    def ticks(self) -> list[dict[str, np.ndarray]]:
+        """Return the complete ticks in order of publication, each with its values by topic."""
+        ticks: list[dict[str, np.ndarray]] = []
+        for item in sorted(self.received, key=lambda item: item.sent):
+            if item.topic == 'thrust_limits' or not ticks:
+                ticks.append({})
+            ticks[-1][item.topic] = item.values
+        return [tick for tick in ticks if len(tick) == len(TYPES_OUT)]
+
+    def setpoints(self) -> np.ndarray | None:
+        """Return the last setpoints that arrived, or None."""
+        return next((item.values for item in reversed(self.received)
+                     if item.topic == 'thruster_setpoints'), None)
+
+    def send(self) -> None:
+        """Send the present twist and wrench, those that are not None."""
+        if self.twist is not None:
+            self.send_twist(self.twist)
+        if self.wrench is not None:
+            self.send_wrench(self.wrench)
+
+    def send_wrench(self, wrench: Sequence[float]) -> None:
+        """Send one wrench, message axes."""
+        message = Wrench()
+        force, torque = message.force, message.torque
+        force.x, force.y, force.z, torque.x, torque.y, torque.z = map(float, wrench)
+        assert np.array_equal(wrench_components(message), wrench, equal_nan=True)
+        self._inputs['cmd_wrench'].publish(message)
+
+    def send_twist(self, twist: Sequence[float]) -> None:
+        """Send one odometry message, message axes."""
+        message = Odometry()
+        linear, angular = message.twist.twist.linear, message.twist.twist.angular
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = map(float, twist)
+        assert np.array_equal(twist_components(message.twist.twist), twist, equal_nan=True)
+        self._inputs['odom'].publish(message)
+
+    def wait_until(self, condition: Callable[[], Any], what: str, timeout: float = 20.0) -> None:
+        """Spin until `condition` holds; `what` is said if it does not within `timeout` s."""
+        deadline = time.monotonic() + timeout
+        while not condition():
+            newest = self.ticks[-1] if self.ticks else 'none'
+            assert time.monotonic() < deadline, (
+                f'not within {timeout} s: {what}; newest tick: {newest}')
+            self.spinner.spin_once(timeout_sec=0.02)
+
+    def wait_for_ticks(self, count: int) -> list[dict[str, np.ndarray]]:
+        """Spin for `count` ticks more than have arrived, and return them."""
+        known = len(self.ticks)
+        self.wait_until(lambda: len(self.ticks) >= known + count, f'{count} more ticks')
+        return self.ticks[known:]
+
+    def settle(self, wrench: Sequence[float] | None = None,
+               twist: Sequence[float] | None = None) -> dict[str, np.ndarray]:
+        """
+        Keep sending a wrench and a twist until they are answered alike at two ticks in a row.
+
+        :return: the values of the last tick by topic. It comes long enough after the first
+            sending, by four ticks, that both inputs have been read.
+        """
+        self.wrench = None if wrench is None else np.array(wrench, dtype=float)
+        self.twist = None if twist is None else np.array(twist, dtype=float)
+        known = len(self.ticks)
+        self.send()
+        self.wait_until(lambda: len(self.ticks) >= known + 4 and self._answered(),
+                        f'an answer to the wrench {wrench} at the twist {twist}')
+        return self.ticks[-1]
+
+    def _answered(self) -> bool:
+        before, last = self.ticks[-2:]
+        commanded = np.zeros(6) if self.wrench is None else self.wrench
+        answered = last['achieved_wrench'] + last['unallocated_wrench']
+        return np.allclose(answered, commanded, rtol=1e-12, atol=1e-6) and all(
+            np.allclose(before[topic], last[topic], rtol=0.0, atol=1e-6) for topic in last)
+
+    def close(self) -> None:
+        """End the executor and this node."""
+        self.spinner.shutdown()
+        self.destroy_node()
+
+
+def cruise(speed: float, side: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return wrench and twist of the paper's test; `side` is +1 in frd axes, -1 in flu."""
+    return (np.array([40.0 * speed**2, 0.0, 0.0, 0.0, side * 50.0, 0.0]),
+            np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))

@@ -20,7 +20,7 @@ TYPES_OUT = {  # in the order of publication
     'thrust_limits': Float64MultiArray, 'thruster_setpoints': Float64MultiArray,
     'achieved_wrench': Wrench, 'unallocated_wrench': Wrench}
 
-# The paper's test, physics.md section 6: 40 v^2 N of surge and 50 N*m of pitch, straight ahead.
+# The paper's test, recomputed: 40 v^2 N of surge and 50 N*m of pitch, straight ahead.
 # Speed, (down, left, up, right, tunnel), limits of the stern thrusters, upper limit of the tunnel,
 # pitch and heave achieved, frd axes [m/s, N, N*m].
 ORACLE = (

@@ -36,7 +36,7 @@ def end(process):
 
 
 def test_table():
-    """Each row is the one of physics.md section 6, from a running node."""
+    """Each row is the one of the recomputed table of the paper's test, from a running node."""
     process = start(*DEMO)
     try:
         stdout, stderr = process.communicate(timeout=TIMEOUT)

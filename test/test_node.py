@@ -148,7 +148,7 @@ def test_every_tick_adds_up(start):
 
 @pytest.mark.parametrize('speed, thrusts, stern, tunnel, pitch, heave', ORACLE)
 def test_the_papers_test(start, speed, thrusts, stern, tunnel, pitch, heave):
-    """The table of physics.md section 6 comes out of the topics."""
+    """The table of the recomputed table of the paper's test comes out of the topics."""
     _, peer = start()
     tick = peer.settle(*cruise(speed, side=-1.0))
     assert_allclose(tick['thruster_setpoints'], thrusts, atol=0.02)

@@ -37,24 +37,27 @@ class ActiveSet:
         self._matrix = matrix
         self._per_multiplier = matrix / thrust_weights
         self._compliance = np.diag(1.0 / wrench_weights)
-        self._sides = np.zeros(len(thrust_weights), dtype=np.int8)  # -1 lower, 0 free, +1 upper
         self._response = lru_cache(maxsize=CACHED_SETS)(self._compute_response)
+        self._sides = bytes(len(thrust_weights))  # of an int8 array: -1 lower, 0 free, +1 upper
 
-    def solve(self, wrench: np.ndarray, limits: np.ndarray) -> np.ndarray:
+    def solve(self, wrench: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """
         Return what each thruster would give at the optimum if its own bound did not count.
 
         :param wrench: f over the controlled DOFs, (m,).
         :param limits: (2, p), row 0 lower, row 1 upper, not below it.
-        :return: (p,); cut to the limits it is the optimum. In the rare case that rounding keeps
-            the method from ending in 20 + 10 p steps, cut to the limits it is only near it.
+        :return: the unbounded thrusts (p,), which cut to the limits are the optimum, and which
+            bound holds each thruster: -1 lower, 0 none, 1 upper, (p,) int8. In the rare case that
+            rounding keeps the method from ending in 20 + 10 p steps, it is only near the optimum.
         """
         wanted = self._wanted(wrench, limits, self._sides)
-        sides = _sides(wanted, limits)
-        if sides.tobytes() != self._sides.tobytes():
+        sides = sides_of(wanted, limits)
+        if (key := sides.tobytes()) != self._sides:
             wanted = self._search(wrench, limits, wanted, sides)
-            self._sides = _sides(wanted, limits)
-        return wanted
+            sides = sides_of(wanted, limits)
+            key = sides.tobytes()
+        self._sides = key
+        return wanted, sides
 
     def _search(self, wrench: np.ndarray, limits: np.ndarray, wanted: np.ndarray,
                 sides: np.ndarray) -> np.ndarray:
@@ -64,7 +67,7 @@ class ActiveSet:
         fixed = lower >= upper
         sides = np.where(fixed, np.int8(1), sides)
         for _ in range(20 + 10 * len(thrusts)):
-            wanted = self._wanted(wrench, limits, sides)
+            wanted = self._wanted(wrench, limits, sides.tobytes())
             step = np.where(sides == 0, wanted - thrusts, 0.0)
             first, share = _first_blocked(thrusts, step, lower, upper)
             if share < 1.0:
@@ -80,8 +83,8 @@ class ActiveSet:
             sides[most] = 0
         return wanted
 
-    def _wanted(self, wrench: np.ndarray, limits: np.ndarray, sides: np.ndarray) -> np.ndarray:
-        held, to_wrench, to_bounds = self._response(sides.tobytes())
+    def _wanted(self, wrench: np.ndarray, limits: np.ndarray, sides: bytes) -> np.ndarray:
+        held, to_wrench, to_bounds = self._response(sides)
         return to_wrench @ wrench - to_bounds @ limits.take(held)
 
     def _compute_response(self, sides: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -104,9 +107,10 @@ class ActiveSet:
         return in_limits, to_wrench, to_wrench @ self._matrix[:, held]
 
 
-def _sides(wanted: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    """Return for each thruster which limit `wanted` lies beyond: -1, 0 or 1, as int8."""
-    return (wanted > limits[1]).view(np.int8) - (wanted < limits[0]).view(np.int8)
+def sides_of(wanted: np.ndarray, limits: np.ndarray) -> np.ndarray:
+    """Return for each thruster which limit `wanted` lies beyond: -1, 0 or 1, (p,) int8."""
+    lower, upper = limits
+    return (wanted > upper).view(np.int8) - (wanted < lower).view(np.int8)
 
 
 def _first_blocked(thrusts: np.ndarray, step: np.ndarray, lower: np.ndarray,

@@ -1,12 +1,11 @@
 """The allocation problem, eq. 2.6 of Kostenko and Tolstonogov (2017), on OSQP."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-import osqp
-import scipy.sparse
-from thrust_allocator.active_set import ActiveSet
+from thrust_allocator.active_set import ActiveSet, sides_of
 from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.solver import Solver
 from thrust_allocator.vehicle import Vehicle
 
 TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
@@ -15,8 +14,7 @@ MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
 WORST_CONDITION = 1e13  # of the Hessian; beyond it double precision has nothing left to give
 
 
-@dataclass(frozen=True)
-class Allocation:
+class Allocation(NamedTuple):
     """What one tick decided; p thrusters, wrenches in frd axes at the body origin."""
 
     thrusts: np.ndarray  # tau, (p,), inside `limits` exactly [N]
@@ -77,14 +75,9 @@ class AllocationProblem:
         self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
         self._gradient = -self._thrusts.T @ (matrix.T * wrench_weights)  # q = gradient @ f
 
-        p = len(thrust_weights)
-        self._tolerance = TOLERANCE * np.abs(vehicle.bollard_thrust).max()
-        self._solver = osqp.OSQP()
-        self._solver.setup(
-            scipy.sparse.identity(p, format='csc'), np.zeros(p),
-            scipy.sparse.csc_matrix(self._thrusts), np.zeros(p), np.zeros(p),
-            verbose=False, scaling=0, polishing=False,
-            eps_abs=self._tolerance,
+        self._solver = Solver(
+            self._thrusts, verbose=False, scaling=0, polishing=False,
+            eps_abs=TOLERANCE * np.abs(vehicle.bollard_thrust).max(),
             # A wrench far out of reach makes a gradient so large that its rounding matters
             eps_rel=ROUNDING * singular[0] / singular[-1],
             max_iter=MAX_ITERATIONS, check_termination=1, check_dualgap=False,
@@ -102,19 +95,15 @@ class AllocationProblem:
         """
         lower, upper = limits
         command = wrench[self._controlled]
-        wanted = self._active_set.solve(command, limits)
+        wanted, at_bound = self._active_set.solve(command, limits)
         thrusts = np.minimum(np.maximum(wanted, lower), upper)
-        multipliers = self._thrust_weights * (wanted - thrusts)
-        self._solver.update(q=self._gradient @ command, l=lower, u=upper)
-        self._solver.warm_start(x=self._factor @ thrusts, y=multipliers)
-        result = self._solver.solve(raise_error=False)
-        if result.info.status == 'solved' and result.info.iter > 1:  # the start was not it
-            multipliers = result.y
-            wanted = self._thrusts @ result.x + multipliers / self._thrust_weights
-            thrusts = np.minimum(np.maximum(wanted, lower), upper)
+        status, iterations = self._solver.solve(
+            self._gradient @ command, lower, upper,
+            self._factor @ thrusts, self._thrust_weights * (wanted - thrusts))
+        if status == 'solved' and iterations > 1:  # the start was not the optimum
+            whitened, multipliers = self._solver.optimum
+            wanted = self._thrusts @ whitened + multipliers / self._thrust_weights
+            thrusts, at_bound = np.clip(wanted, lower, upper), sides_of(wanted, limits)
         achieved = self._matrix @ thrusts
         return Allocation(
-            thrusts, limits, achieved, wrench - achieved,
-            (multipliers > self._tolerance).view(np.int8)
-            - (multipliers < -self._tolerance).view(np.int8),
-            result.info.status, result.info.iter)
+            thrusts, limits, achieved, wrench - achieved, at_bound, status, iterations)

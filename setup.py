@@ -10,7 +10,7 @@ jazzy = ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces']
 setup(
     name=package_name,
     version='0.1.0',
-    packages=find_packages(include=[package_name]),
+    packages=find_packages(include=[package_name, f'{package_name}.*']),
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
@@ -20,8 +20,9 @@ setup(
     install_requires=['setuptools', 'numpy', 'osqp>=1.1', 'PyYAML'],
     extras_require={
         'jazzy': jazzy,
-        'test': ['pytest', 'hypothesis', 'daqp', 'flake8'],
+        'test': ['pytest', 'hypothesis', 'daqp', 'scipy', 'flake8'],
         'plot': ['matplotlib'],
+        'bench': ['daqp', 'quadprog', 'casadi', 'scipy', 'matplotlib'],
     },
     zip_safe=True,
     maintainer='thrust_allocator maintainers',
@@ -30,7 +31,7 @@ setup(
     license='Apache-2.0',
     entry_points={
         'console_scripts': [
-            'node = thrust_allocator.node:main',
+            'node = thrust_allocator.__main__:main',
             'demo = thrust_allocator.demo:main',
         ],
     },

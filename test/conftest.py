@@ -1,5 +1,6 @@
 """Shared by all tests: an environment that nothing leaves, and variants of MT-2012's file."""
 
+from contextlib import ExitStack
 import copy
 import os
 from pathlib import Path
@@ -43,3 +44,32 @@ def variant(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def start(mt2012):
+    """Return a function that starts the node and a peer in a Context of their own."""
+    from ros_peer import Peer, ros_context  # not before the environment above
+    from thrust_allocator.node import ThrustAllocator
+
+    with ExitStack() as stack:
+        def start_node(*rules, file=mt2012, remap='', kind=Peer, **options):
+            """Return the node with parameter rules, and the peer: both spin with the latter."""
+            arguments = [word for rule in rules for word in ('-p', rule)]
+            arguments += ['-r', remap] if remap else []
+            context = stack.enter_context(ros_context('--params-file', str(file), *arguments))
+            node = ThrustAllocator(context=context)
+            stack.callback(node.destroy_node)
+            peer = kind(context, beside=node, **options)
+            stack.callback(peer.close)
+            return node, peer
+        yield start_node
+
+
+@pytest.fixture
+def bench(start):
+    """Return a function that starts the node in simulated time and frd axes on a Bench."""
+    from bench import Bench
+
+    return lambda *rules, **options: start(
+        'use_sim_time:=true', 'message_frame:=frd', *rules, kind=Bench, **options)[1]

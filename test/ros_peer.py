@@ -5,15 +5,16 @@ from contextlib import contextmanager
 import time
 from typing import Any, NamedTuple
 
-from geometry_msgs.msg import Wrench
+from geometry_msgs.msg import Vector3, Wrench
 from nav_msgs.msg import Odometry
 import numpy as np
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import Float64MultiArray
-from thrust_allocator.node import twist_components, wrench_components
 
 TYPES_IN = {'cmd_wrench': Wrench, 'odom': Odometry}
 TYPES_OUT = {  # in the order of publication
@@ -85,7 +86,8 @@ class Peer(Node):
     def _recorder(self, topic: str) -> Callable[[Any, dict], None]:
         def record(message: Any, info: dict) -> None:
             wrench = isinstance(message, Wrench)
-            values = wrench_components(message) if wrench else np.array(message.data)
+            values = np.array(_components(message.force, message.torque) if wrench
+                              else message.data)
             self.received.append(Received(topic, message, values, info['source_timestamp']))
             if topic == 'unallocated_wrench':
                 self.on_tick()
@@ -116,17 +118,13 @@ class Peer(Node):
     def send_wrench(self, wrench: Sequence[float]) -> None:
         """Send one wrench, message axes."""
         message = Wrench()
-        force, torque = message.force, message.torque
-        force.x, force.y, force.z, torque.x, torque.y, torque.z = map(float, wrench)
-        assert np.array_equal(wrench_components(message), wrench, equal_nan=True)
+        _fill(message.force, message.torque, wrench)
         self._inputs['cmd_wrench'].publish(message)
 
     def send_twist(self, twist: Sequence[float]) -> None:
         """Send one odometry message, message axes."""
         message = Odometry()
-        linear, angular = message.twist.twist.linear, message.twist.twist.angular
-        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = map(float, twist)
-        assert np.array_equal(twist_components(message.twist.twist), twist, equal_nan=True)
+        _fill(message.twist.twist.linear, message.twist.twist.angular, twist)
         self._inputs['odom'].publish(message)
 
     def wait_until(self, condition: Callable[[], Any], what: str, timeout: float = 20.0) -> None:
@@ -171,6 +169,39 @@ class Peer(Node):
         """End the executor and this node."""
         self.spinner.shutdown()
         self.destroy_node()
+
+
+def _components(linear: Vector3, angular: Vector3) -> list[float]:
+    return [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+
+
+def _fill(linear: Vector3, angular: Vector3, values: Sequence[float]) -> None:
+    linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = map(float, values)
+
+
+class SimulatedClock:
+    """Publishes /clock 100 times per second of real time, from a timer of a peer."""
+
+    def __init__(self, peer: Peer) -> None:
+        """Start to publish, 20 ms further each time."""
+        self._peer = peer
+        self._publisher = peer.create_publisher(ClockMessage, '/clock', 1)
+        self._pulses = 0
+        self.time = 1000 * 10**9  # [ns]
+        self.step = 20 * 10**6  # [ns]
+        peer.create_timer(0.01, self._pulse, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _pulse(self) -> None:
+        self._pulses += 1
+        self.time += self.step
+        message = ClockMessage()
+        message.clock.sec, message.clock.nanosec = divmod(self.time, 10**9)
+        self._publisher.publish(message)
+
+    def wait_for_pulses(self, count: int) -> None:
+        """Spin until the time has been published `count` times more, whether it moves or not."""
+        known = self._pulses
+        self._peer.wait_until(lambda: self._pulses >= known + count, f'{count} times on /clock')
 
 
 def cruise(speed: float, side: float) -> tuple[np.ndarray, np.ndarray]:

@@ -112,7 +112,7 @@ def test_nobody_hears_the_demo(eavesdropper, command, rows, environment):
 
 def test_the_eavesdropper_is_not_deaf(eavesdropper):
     """The same observer sees and hears a node in the demo's place that does not hide."""
-    process = start('-m', 'thrust_allocator.node', '--ros-args', '-r', f'__ns:={NAMESPACE}')
+    process = start('-m', 'thrust_allocator', '--ros-args', '-r', f'__ns:={NAMESPACE}')
     wanted = {f'{NAMESPACE}/{topic}' for topic in (*TYPES_IN, *TYPES_OUT)}
     try:
         eavesdropper.wait_until(lambda: overheard(eavesdropper) >= wanted, 'all its topics')

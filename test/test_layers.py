@@ -8,7 +8,7 @@ import pytest
 import thrust_allocator
 
 PACKAGE = Path(thrust_allocator.__file__).parent
-WITH_ROS = {'node', 'demo'}
+WITH_ROS = {'node', 'messages', 'demo', 'soak', '__main__'}
 MODULES = sorted({file.stem for file in PACKAGE.glob('*.py')} - WITH_ROS - {'__init__'})
 
 

@@ -1,44 +1,22 @@
-"""The node and a peer of it in one process: its topics and parameters, as the contract has them."""
-
-from contextlib import ExitStack
-from itertools import cycle
+"""The node and a peer of it in one process: its topics, as the contract has them."""
 
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
-from rclpy.clock import Clock, ClockType
-from rclpy.parameter import Parameter
 from rclpy.qos import ReliabilityPolicy
-from ros_peer import cruise, ORACLE, Peer, ros_context
-from rosgraph_msgs.msg import Clock as ClockMessage
-from thrust_allocator.node import ThrustAllocator
-from thrust_allocator.parameter_types import ParameterError
+from ros_peer import cruise, ORACLE, SimulatedClock
 
 NAMES = ['down', 'left', 'up', 'right', 'tunnel']
 OUT = {'thrust_limits': 'std_msgs/msg/Float64MultiArray',
        'thruster_setpoints': 'std_msgs/msg/Float64MultiArray',
        'achieved_wrench': 'geometry_msgs/msg/Wrench',
        'unallocated_wrench': 'geometry_msgs/msg/Wrench'}
-IN = {'cmd_wrench': 'geometry_msgs/msg/Wrench', 'odom': 'nav_msgs/msg/Odometry'}
+IN = {'cmd_wrench': 'geometry_msgs/msg/Wrench', 'odom': 'nav_msgs/msg/Odometry',
+      'current': 'geometry_msgs/msg/Vector3Stamped'}
+REPORTS = {'/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray']}  # in every namespace
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # between frd and flu axes
 WRENCH = np.array([60.0, 10.0, 20.0, 5.0, 30.0, -15.0])
 TWIST = np.array([1.0, 0.3, -0.2, 0.05, 0.1, -0.1])
-
-
-@pytest.fixture
-def start(mt2012):
-    """Return a function that starts the node and a peer in a Context of their own."""
-    with ExitStack() as stack:
-        def start_node(*rules, file=mt2012, remap='', **options):
-            arguments = [word for rule in rules for word in ('-p', rule)]
-            arguments += ['-r', remap] if remap else []
-            context = stack.enter_context(ros_context('--params-file', str(file), *arguments))
-            node = ThrustAllocator(context=context)
-            stack.callback(node.destroy_node)
-            peer = Peer(context, beside=node, **options)
-            stack.callback(peer.close)
-            return node, peer
-        yield start_node
 
 
 def assert_alike(tick, other, *topics):
@@ -57,11 +35,15 @@ def test_topics(start, namespace):
     """All topics of the contract are there by type, in the node's own namespace."""
     _, peer = start(remap=f'__ns:={namespace or "/"}')
     who = ('thrust_allocator', namespace or '/')
-    for found, expected in ((peer.get_publisher_names_and_types_by_node(*who), OUT),
-                            (peer.get_subscriber_names_and_types_by_node(*who), IN)):
+    for found, expected, absolute in (
+            (peer.get_publisher_names_and_types_by_node(*who), OUT, REPORTS),
+            (peer.get_subscriber_names_and_types_by_node(*who), IN, {})):
         own = {name: types for name, types in found
                if name not in ('/rosout', '/parameter_events')}  # of every ROS node
-        assert own == {f'{namespace}/{name}': [kind] for name, kind in expected.items()}
+        assert own == absolute | {
+            f'{namespace}/{name}': [kind] for name, kind in expected.items()}
+    services = dict(peer.get_service_names_and_types_by_node(*who))
+    assert services[f'{namespace}/thrust_allocator/enable'] == ['std_srvs/srv/SetBool']
     assert np.abs(peer.settle(WRENCH, TWIST)['thruster_setpoints']).max() > 1.0
 
 
@@ -186,49 +168,6 @@ def test_wrench_time_out(start):
     assert_alike(peer.settle(WRENCH, TWIST), answer)
 
 
-def broken_messages(send, value):
-    """Return a function that sends a message broken in one component, the next one each time."""
-    messages = cycle(np.where(np.eye(6, dtype=bool), value, 2.0))
-    return lambda: send(next(messages))
-
-
-@pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf, 1e308, -1.0001e6])
-def test_a_broken_wrench_is_dropped_whole(start, value):
-    """One component that is not finite or too large, and none of the message counts."""
-    _, peer = start('wrench_timeout:=60.0')
-    answer = peer.settle(WRENCH)
-    peer.on_tick = broken_messages(peer.send_wrench, value)
-    for tick in peer.wait_for_ticks(10):
-        assert_alike(tick, answer)
-
-
-@pytest.mark.parametrize('value', [np.nan, 1e308])
-def test_a_broken_wrench_refreshes_nothing(start, value):
-    """Broken wrenches at every tick do not put the time-out off."""
-    _, peer = start('wrench_timeout:=0.1')
-    peer.settle(WRENCH)
-    peer.on_tick = broken_messages(peer.send_wrench, value)
-    peer.wait_until(lambda: is_silent(peer.ticks[-1]), 'zeros while broken wrenches come')
-
-
-@pytest.mark.parametrize('value', [np.nan, np.inf, 1e6, -50.001])
-def test_broken_odometry_is_dropped_whole(start, value):
-    """One component of the twist that is not finite or too fast, and the limits stay."""
-    _, peer = start()
-    before = peer.settle(twist=TWIST)
-    peer.on_tick = broken_messages(peer.send_twist, value)
-    for tick in peer.wait_for_ticks(10):
-        assert_array_equal(tick['thrust_limits'], before['thrust_limits'])
-
-
-def test_the_largest_messages_are_taken(start):
-    """1e6 N and N*m, and 50 m/s and rad/s, are still inside what is accepted."""
-    _, peer = start()
-    tick = peer.settle(np.full(6, 1e6), np.full(6, 50.0))
-    assert tick['thrust_limits'][9] == 0.0
-    assert (tick['unallocated_wrench'] != 0.0).all()
-
-
 def test_message_frames(start):
     """The same wrench and twist in flu and in frd axes give the same, each in its own axes."""
     _, frd = start('message_frame:=frd')
@@ -258,78 +197,26 @@ def test_a_dof_of_weight_zero(start):
 def test_simulated_time(start):
     """With use_sim_time no tick comes while /clock stands, and time-outs are in its seconds."""
     _, peer = start('use_sim_time:=true', 'wrench_timeout:=50.0')
-    publisher = peer.create_publisher(ClockMessage, '/clock', 1)
-    stamps, step = [10**12], 20_000_000  # [ns]
-
-    def pulse():
-        stamps.append(stamps[-1] + step)
-        message = ClockMessage()
-        message.clock.sec, message.clock.nanosec = divmod(stamps[-1], 10**9)
-        publisher.publish(message)
-
-    def wait_for_pulses(count):
-        known = len(stamps)
-        peer.wait_until(lambda: len(stamps) >= known + count, 'the timer that moves /clock')
-
-    peer.create_timer(0.01, pulse, clock=Clock(clock_type=ClockType.STEADY_TIME))
+    clock = SimulatedClock(peer)
     peer.settle(WRENCH)
-    peer.wrench, step = None, 0
-    wait_for_pulses(5)
+    peer.wrench, clock.step = None, 0
+    clock.wait_for_pulses(5)
     before = len(peer.received)
-    wait_for_pulses(20)
+    clock.wait_for_pulses(20)
     assert len(peer.received) == before
-    step = 20_000_000
+    clock.step = 20 * 10**6
     assert not is_silent(peer.wait_for_ticks(5)[-1])
-    step = 10_000_000_000
+    clock.step = 10 * 10**9
     peer.wait_until(lambda: is_silent(peer.ticks[-1]), 'zeros once 50 s have passed on /clock')
 
 
-def test_parameters_are_readable(start, variant):
-    """Every parameter can be read with its value in effect and its type, defaults included."""
-    node, _ = start('wrench_timeout:=0.25', file=variant({
-        'rate': 20, 'thrusters.up.position': [-2, 0, 0], 'thrusters.up.weight': 2}))
-    expected = {
-        'rate': 20.0, 'wrench_timeout': 0.25, 'message_frame': 'flu', 'start_enabled': True,
-        'wrench_weights.pitch': 1e4, 'wrench_weights.sway': 0.0, 'thruster_names': NAMES,
-        'thrusters.up.model': 'propeller', 'thrusters.up.weight': 2.0,
-        'thrusters.up.position': [-2.0, 0.0, 0.0], 'thrusters.up.critical_angle_min': np.pi / 3,
-        'thrusters.down.bollard_thrust': [-68.2, 120.1], 'thrusters.tunnel.decay': 7.0}
-    for name, value in expected.items():
-        found = node.get_parameter(name)
-        assert found.type_ == Parameter(name, value=value).type_
-        assert (list(found.value) if isinstance(value, list) else found.value) == value
-
-
-def test_parameters_are_read_only(start):
-    """Setting any parameter of the vehicle is refused with a reason, and changes nothing."""
-    node, peer = start()
-    before = peer.settle(WRENCH)
-    names = [name for name in node.get_parameters_by_prefix('')
-             if name.startswith(('rate', 'thruster', 'wrench', 'message', 'vehicle', 'water'))]
-    assert {'rate', 'thruster_names', 'thrusters.up.weight', 'wrench_timeout'} <= set(names)
-    for name in names:
-        value = node.get_parameter(name).value
-        other = 2.0 * value if isinstance(value, float) else value
-        result, = node.set_parameters([Parameter(name, value=other)])
-        assert not result.successful and result.reason
-        assert node.get_parameter(name).value == value
-    assert_alike(peer.settle(WRENCH), before)
-
-
-@pytest.mark.parametrize('rule, named', [
-    ('rate:=-1.0', r'rate: is -1.0, must be .*\(0, 1000\]'),
-    ('wrench_weights.swai:=1.0', r'wrench_weights.swai: .*wrench_weights.sway'),
-    ('odometry_timeout:=0.5', r'odometry_timeout: .*not built yet'),
-    ('thrusters.stern.weight:=1.0', r'thrusters.stern: is not in thruster_names')])
-def test_a_mistake_in_the_parameters(start, rule, named):
-    """The constructor raises ParameterError, which names the parameter."""
-    with pytest.raises(ParameterError, match=named):
-        start(rule)
-
-
-def test_no_parameters_for_this_node(start, variant):
-    """If the file has nothing for this node, the error asks about its top key."""
-    file = variant({}, top_key='/other/thrust_allocator')
-    with pytest.raises(ParameterError,
-                       match='thruster_names: .*top key.* /alpha/thrust_allocator'):
-        start(file=file, remap='__ns:=/alpha')
+def test_simulated_time_jumps_back(start):
+    """After /clock has jumped backwards a wrench from before counts no more."""
+    _, peer = start('use_sim_time:=true', 'wrench_timeout:=50.0')
+    clock = SimulatedClock(peer)
+    peer.settle(WRENCH)
+    peer.wrench = None
+    clock.wait_for_pulses(5)
+    clock.time -= 500 * 10**9
+    clock.wait_for_pulses(5)
+    assert is_silent(peer.wait_for_ticks(5)[-1])

@@ -18,6 +18,7 @@ PROPELLER = {DOWN + 'propeller.diameter': 0.2, DOWN + 'propeller.max_revolutions
 
 # What the contract allows: text of the message, outermost values allowed, values next to them not
 POSITIVE = '(0, 1000000]', [5e-324, 1e6], [0.0]
+ALMOST_1 = math.nextafter(1.0, 0.0)
 NOT_NEGATIVE = '[0, 1000000]', [0.0, 1e6], []
 ANY = '[-1000000, 1000000]', [-1e6, 1e6], []
 NUMBERS = {
@@ -25,9 +26,11 @@ NUMBERS = {
     **{f'wrench_weights.{dof}': ('[0.001, 1e+07]', [1e-3, 1e7], [-1e-3]) for dof in DOFS},
     UP + 'critical_angle_min': ('(0, 1.570796]', [5e-324, math.pi / 2], [0.0]),
     UP + 'opposed_floor': ('[0, 1]', [0.0, 1.0], []),
-    **dict.fromkeys([UP + 'critical_angle_slope', TUNNEL + 'decay'], NOT_NEGATIVE),
-    **dict.fromkeys(['water_density', 'wrench_timeout', UP + 'weight', TUNNEL + 'area',
-                     *PROPELLER], POSITIVE),
+    TUNNEL + 'cutoff': ('[0, 1)', [0.0, ALMOST_1], []),
+    **dict.fromkeys(['odometry_timeout', UP + 'max_rate', UP + 'critical_angle_slope',
+                     TUNNEL + 'decay'], NOT_NEGATIVE),
+    **dict.fromkeys(['water_density', 'wrench_timeout', 'current_timeout', UP + 'weight',
+                     TUNNEL + 'area', *PROPELLER], POSITIVE),
     **dict.fromkeys([UP + 'torque_ratio', UP + 'second_critical_angle_offset',
                      UP + 'second_critical_angle_slope'], ANY),
 }
@@ -40,7 +43,9 @@ LISTS = {  # text of the message, a good list, and each item's ends
                             '[0, 1000000], not both 0', [-1.0, 1.0], [(-1e6, 0), (0, 1e6)]),
     UP + 'speed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     UP + 'opposed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
+    'fallback_velocity': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
 }
+FLAGS = ['start_enabled', UP + 'enabled']
 WORDS = {'vehicle_frame': 'one of frd, flu', 'message_frame': 'one of frd, flu',
          UP + 'model': 'one of propeller, tunnel, constant'}
 ALLOWED = {
@@ -49,6 +54,7 @@ ALLOWED = {
        for name, (interval, _, _) in NUMBERS.items()},
     **{name: text for name, (text, _, _) in LISTS.items()},
     **WORDS,
+    **dict.fromkeys(FLAGS, 'true or false'),
 }
 
 
@@ -107,6 +113,9 @@ def of_wrong_type():
     for name in WORDS:
         for value in ['', 'FRD', 'propeler', 1, True, None, [], ['frd']]:
             yield name, value
+    for name in FLAGS:
+        for value in [0, 1, 1.0, 'true', 'false', 'yes', '', None, [], [True], {'a': True}]:
+            yield name, value
     for value in ['up', '', True, None, 1, 1.0, [], {'a': 1}]:
         yield 'thruster_names', value
 
@@ -127,6 +136,7 @@ def test_a_wrong_value_is_refused(name, value):
     + [(name, tuple(row[side] for row in ends)) for name, (_, _, ends) in LISTS.items()
        for side in (0, 1) if name != UP + 'direction']
     + [(f'wrench_weights.{dof}', 0.0) for dof in DOFS]
+    + [(name, flag) for name in FLAGS for flag in (True, False)]
     + [('vehicle_frame', 'flu'), ('message_frame', 'frd'), (UP + 'bollard_thrust', (-1e6, 1e6))]))
 def test_the_ends_of_a_range_are_allowed(name, value):
     """The outermost values are taken, in lists all at once; one Bollard limit may be 0."""
@@ -211,32 +221,8 @@ def test_an_unknown_name_elsewhere_is_a_warning():
     assert read_parameters(vehicle()).warnings == ()
 
 
-@pytest.mark.parametrize('name, neutral, others, allowed', [
-    ('start_enabled', [True], [False, 1, 'true', None],
-     'true or left out: starting disabled is not built yet'),
-    (UP + 'enabled', [True], [False, 1, None],
-     'true or left out: taking a thruster out is not built yet'),
-    (UP + 'max_rate', [0.0, 0], [5.0, -1.0, math.nan, False, None],
-     '0.0 or left out: a rate limit is not built yet'),
-    (TUNNEL + 'cutoff', [0.0, 0], [0.1, False, None],
-     '0.0 or left out: a cut-off is not built yet'),
-    ('fallback_velocity', [[0.0, 0.0, 0.0], [0, 0, 0]],
-     [(0.5, 0.0, 0.0), (0.0, 0.0, -1e-9), (0.0, 0.0), (), 0.0, None],
-     '[0.0, 0.0, 0.0] or left out: a fallback velocity is not built yet'),
-    ('odometry_timeout', [], [0.5, 1, None],
-     'left out: a time-out of the odometry is not built yet'),
-    ('current_timeout', [], [10.0, 'x'], 'left out: the topic current is not built yet'),
-], ids=lambda value: value if isinstance(value, str) and ' ' not in value else '')
-def test_what_is_not_built_yet_is_refused(name, neutral, others, allowed):
-    """A parameter without effect yet is refused by name, unless its value asks for no effect."""
-    for value in neutral:
-        assert read_parameters(vehicle({name: value})).values == read_parameters(vehicle()).values
-    for value in others:
-        assert message({name: value}) == f'{name}: is {value!r}, must be {allowed}'
-
-
 @pytest.mark.parametrize('one', [1, '1.0e0', '1e0', '+1.0E+00', '10.0e-1', '.1e1'])
-@pytest.mark.parametrize('name', [*NUMBERS, *LISTS])
+@pytest.mark.parametrize('name', [name for name in (*NUMBERS, *LISTS) if name != TUNNEL + 'cutoff'])
 def test_whole_numbers_and_strings_are_reals(name, one):
     """Where a real number is meant, a whole one and 1.0e4 as PyYAML reads it mean the same."""
     first = -1.0 if name == UP + 'bollard_thrust' else 1.0
@@ -256,7 +242,7 @@ def test_the_defaults_are_those_of_the_contract():
     assert {name: value for name, value in parameters.values.items() if value is not None} == {
         **required, 'rate': 50.0, 'water_density': 1025.0, 'vehicle_frame': 'frd',
         'message_frame': 'flu', 'start_enabled': True, 'wrench_timeout': 0.5,
-        'fallback_velocity': (0.0, 0.0, 0.0),
+        'odometry_timeout': 0.5, 'current_timeout': 10.0, 'fallback_velocity': (0.0, 0.0, 0.0),
         **{f'wrench_weights.{dof}': 10000.0 for dof in DOFS},
         UP + 'enabled': True, UP + 'weight': 1.0, UP + 'max_rate': 0.0, UP + 'cutoff': 0.0,
         UP + 'torque_ratio': 0.0, UP + 'critical_angle_slope': 0.2,
@@ -272,7 +258,7 @@ ANYTHING = st.recursive(
 
 
 @settings(max_examples=1000, deadline=None)
-@given(st.sampled_from([*ALLOWED, 'fallback_velocity', UP + 'cutoff', 'wrench_weights'])
+@given(st.sampled_from([*ALLOWED, 'wrench_weights'])
        | st.text().map(UP.__add__) | st.text(), ANYTHING)
 @example('rate', 10**5000)
 @example('thrusters.two\nlines.weight', 1.0)

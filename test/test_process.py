@@ -34,7 +34,7 @@ def launch(namespace):
 
     def start(*arguments):
         processes.append(subprocess.Popen(
-            [sys.executable, '-m', 'thrust_allocator.node', '--ros-args',
+            [sys.executable, '-m', 'thrust_allocator', '--ros-args',
              '-r', f'__ns:={namespace}', *map(str, arguments)],
             cwd=ROOT, env=environment, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE))
@@ -165,7 +165,7 @@ def test_no_parameter_file_at_all(launch, tmp_path, content, said):
     assert str(path) in line and said in line
 
 
-@pytest.mark.parametrize('value', ['abc', '-1', 'null', '2020-01-01'])
+@pytest.mark.parametrize('value', ['abc', '-1', 'null', '2020-01-01', str(10**30)])
 def test_a_wrong_value_on_the_command_line(launch, value):
     """A value that ROS itself would drop, for its type, ends in one line that names it."""
     assert 'rate: is ' in refused(launch, '-p', f'rate:={value}')

@@ -1,5 +1,6 @@
 """The allocation problem, eq. 2.6 of Kostenko and Tolstonogov (2017), on OSQP."""
 
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -75,14 +76,15 @@ class AllocationProblem:
         self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
         self._gradient = -self._thrusts.T @ (matrix.T * wrench_weights)  # q = gradient @ f
 
-        self._solver = Solver(
-            self._thrusts, verbose=False, scaling=0, polishing=False,
-            eps_abs=TOLERANCE * np.abs(vehicle.bollard_thrust).max(),
+        self._settings = {
+            'verbose': False, 'scaling': 0, 'polishing': False, 'max_iter': MAX_ITERATIONS,
+            'check_termination': 1, 'check_dualgap': False,
+            'eps_abs': TOLERANCE * np.abs(vehicle.bollard_thrust).max(),
             # A wrench far out of reach makes a gradient so large that its rounding matters
-            eps_rel=ROUNDING * singular[0] / singular[-1],
-            max_iter=MAX_ITERATIONS, check_termination=1, check_dualgap=False,
+            'eps_rel': ROUNDING * singular[0] / singular[-1],
             # By iterations and never by the clock, so that a run repeats bit for bit
-            adaptive_rho=1, rho=float(np.clip(singular[0] * singular[-1], 1e-6, 1e6)))
+            'adaptive_rho': 1, 'rho': float(np.clip(singular[0] * singular[-1], 1e-6, 1e6))}
+        self._solver = Solver(self._thrusts, **self._settings)
 
     def solve(self, wrench: np.ndarray, limits: np.ndarray) -> Allocation:
         """
@@ -96,6 +98,8 @@ class AllocationProblem:
         lower, upper = limits
         command = wrench[self._controlled]
         wanted, at_bound = self._active_set.solve(command, limits)
+        if not isfinite(wanted.sum()):  # OSQP would call NaN solved
+            wanted = np.zeros_like(wanted)
         thrusts = np.minimum(np.maximum(wanted, lower), upper)
         status, iterations = self._solver.solve(
             self._gradient @ command, lower, upper,
@@ -104,6 +108,8 @@ class AllocationProblem:
             whitened, multipliers = self._solver.optimum
             wanted = self._thrusts @ whitened + multipliers / self._thrust_weights
             thrusts, at_bound = np.clip(wanted, lower, upper), sides_of(wanted, limits)
+        elif status != 'solved':
+            self._solver = Solver(self._thrusts, **self._settings)  # nothing may linger in it
         achieved = self._matrix @ thrusts
         return Allocation(
             thrusts, limits, achieved, wrench - achieved, at_bound, status, iterations)

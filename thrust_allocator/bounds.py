@@ -31,8 +31,50 @@ class ThrustBounds:
         return np.array(tuple(zip(*limits)))
 
 
-def _law(thruster: Thruster) -> Callable[[float, float], tuple[float, float]]:
+def rate_limited(limits: np.ndarray, last: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """
+    Return the part of the limits that is within a step of the last setpoints.
+
+    Where none is, because the limits have moved away faster, the nearest limit: the speed bound
+    wins over the rate.
+
+    :param limits: (2, p), row 0 lower, row 1 upper [N].
+    :param last: (p,) last setpoints [N].
+    :param step: (p,) greatest change, infinite where there is no rate limit [N].
+    :return: (2, p) [N].
+    """
+    lower, upper = limits
+    return np.array((np.minimum(np.maximum(lower, last - step), upper),
+                     np.maximum(np.minimum(upper, last + step), lower)))
+
+
+Law = Callable[[float, float], tuple[float, float]]
+
+
+def _law(thruster: Thruster) -> Law:
     """Return the limits of a thruster as a function of its speed along and across its axis."""
+    if not thruster.enabled:
+        return lambda along, across: (0.0, 0.0)
     if thruster.loss is None:
-        return lambda along, across: thruster.bollard_thrust
-    return thruster.loss.law(thruster.bollard_thrust)
+        law = _constant(thruster.bollard_thrust)
+    else:
+        law = thruster.loss.law(thruster.bollard_thrust)
+    return _cut_off(law, thruster) if thruster.cutoff else law
+
+
+def _constant(limits: tuple[float, float]) -> Law:
+    return lambda along, across: limits
+
+
+def _cut_off(law: Law, thruster: Thruster) -> Law:
+    """Return a law that takes a thruster out, continuously, where its limit is hardly any use."""
+    reverse, forward = thruster.bollard_thrust
+    # (limit - kappa T_0) / (1 - kappa), written so that it is T_0 to the bit at rest
+    per_loss = thruster.cutoff / (1.0 - thruster.cutoff)
+
+    def limits(along: float, across: float) -> tuple[float, float]:
+        lower, upper = law(along, across)
+        return (min(0.0, lower - per_loss * (reverse - lower)),
+                max(0.0, upper - per_loss * (forward - upper)))
+
+    return limits

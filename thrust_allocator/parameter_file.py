@@ -132,6 +132,9 @@ def _check_value(name: str, value: Any) -> None:
         raise ParameterError(
             f'{name}: is {shown(value)}, mixes whole and real numbers, which ROS 2 does not allow: '
             'must be written with decimals throughout, as in 2.0')
+    for item in items:
+        if isinstance(item, int) and not -2**63 <= item < 2**63:
+            raise ParameterError.wrong(name, item, 'a number of 64 bits')
     if len(kinds) != 1 or not kinds <= {bool, int, float, str}:
         allowed = 'a value or a list of values of one type: numbers, words, or true and false'
         raise ParameterError.wrong(name, value, allowed)

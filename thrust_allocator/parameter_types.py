@@ -182,25 +182,3 @@ class Names:
             if list(value).count(item) > 1:
                 raise ParameterError(f'{name}: has {item!r} twice, must be {self}')
         return tuple(value)
-
-
-@dataclass(frozen=True)
-class NotBuilt:
-    """A parameter of the published contract whose effect does not exist yet."""
-
-    effect: str
-    off: float | bool | tuple[float, ...] | None = None  # the value that asks for no effect
-
-    def __str__(self) -> str:
-        if self.off is None:
-            return 'left out'
-        off = list(self.off) if isinstance(self.off, tuple) else self.off
-        return f'{off} or left out'.lower()
-
-    def read(self, name: str, value: object) -> object:
-        """Return `value` if it asks for no effect; otherwise raise ParameterError."""
-        given = tuple(value) if isinstance(value, list) else value
-        if self.off is None or given != self.off or isinstance(given, bool) != isinstance(
-                self.off, bool):
-            raise ParameterError.wrong(name, value, f'{self}: {self.effect} not built yet')
-        return self.off

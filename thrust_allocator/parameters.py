@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from thrust_allocator.frames import DOFS, FRAMES
 from thrust_allocator.parameter_types import (
-    BollardThrust, Choice, Direction, LARGEST, Names, NotBuilt, ParameterError, Real, Reals)
+    BollardThrust, Choice, Direction, Flag, LARGEST, Names, ParameterError, Real, Reals)
 
 REQUIRED = object()  # stands where a default would
 
@@ -37,15 +37,14 @@ NODE = (
     Parameter('water_density', _POSITIVE, 1025.0, 'kg/m^3', 'density of the water'),
     Parameter('vehicle_frame', Choice(FRAMES), 'frd', '', 'axes of positions and directions'),
     Parameter('message_frame', Choice(FRAMES), 'flu', '', 'axes of all wrenches and the twist'),
-    Parameter('start_enabled', NotBuilt('starting disabled is', True), True, '',
+    Parameter('start_enabled', Flag(), True, '',
               'whether the node allocates before ~/enable is called'),
     Parameter('wrench_timeout', _POSITIVE, 0.5, 's', 'age at which a wrench counts no more'),
-    Parameter('odometry_timeout', NotBuilt('a time-out of the odometry is'), None, 's',
-              'age at which a velocity counts no more'),
-    Parameter('current_timeout', NotBuilt('the topic current is'), None, 's',
-              'age at which a current counts no more'),
-    Parameter('fallback_velocity', NotBuilt('a fallback velocity is', (0.0, 0.0, 0.0)),
-              (0.0, 0.0, 0.0), 'm/s', 'velocity through the water while no odometry comes'),
+    Parameter('odometry_timeout', _NOT_NEGATIVE, 0.5, 's',
+              'age at which a velocity counts no more; 0: no odometry is expected'),
+    Parameter('current_timeout', _POSITIVE, 10.0, 's', 'age at which a current counts no more'),
+    Parameter('fallback_velocity', Reals((_ANY,) * 3, '[x, y, z]'), (0.0, 0.0, 0.0), 'm/s',
+              'velocity through the water while no odometry comes, in message_frame axes'),
 ) + tuple(
     Parameter(f'wrench_weights.{dof}', Real(1e-3, 1e7, or_zero=True), 10000.0, '',
               f'R of {dof}: cost of its error squared; 0: not controlled')
@@ -58,12 +57,12 @@ THRUSTER = (
     Parameter('direction', Direction(), REQUIRED, '', 'of positive thrust on the vehicle'),
     Parameter('bollard_thrust', BollardThrust(), REQUIRED, 'N',
               'greatest thrust at rest [reverse, forward]'),
-    Parameter('enabled', NotBuilt('taking a thruster out is', True), True, '',
+    Parameter('enabled', Flag(), True, '',
               'whether the thruster may be used'),
     Parameter('weight', _POSITIVE, 1.0, '', 'Q: cost of its thrust squared'),
-    Parameter('max_rate', NotBuilt('a rate limit is', 0.0), 0.0, 'N/s',
+    Parameter('max_rate', _NOT_NEGATIVE, 0.0, 'N/s',
               'greatest change of thrust; 0: unlimited'),
-    Parameter('cutoff', NotBuilt('a cut-off is', 0.0), 0.0, '',
+    Parameter('cutoff', Real(0.0, 1.0, below=True), 0.0, '',
               'share of Bollard thrust below which a limit is not worth using'),
     Parameter('torque_ratio', _ANY, 0.0, 'm', 'k: reaction torque about direction per N'),
 )

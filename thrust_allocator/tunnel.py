@@ -28,12 +28,15 @@ class TunnelLoss:
             v_t across it [m/s], that gives (lower <= 0, upper >= 0) [N].
         """
         reverse, forward = bollard_thrust
-        decay_mass = self.decay * self.jet_mass  # c rho S [kg/m]
 
         def limits(along: float, across: float) -> tuple[float, float]:
-            load = decay_mass * across * across  # c rho S v_t^2 [N]
+            load = self.load(across)
             # A sense without thrust has none to lose
             return (reverse * exp(load / reverse) if reverse else 0.0,
                     forward * exp(-load / forward) if forward else 0.0)
 
         return limits
+
+    def load(self, across: float) -> float:
+        """Return c rho S v_t^2 [N], which set against the thrust tells how much of it is left."""
+        return self.decay * self.jet_mass * across * across

@@ -23,6 +23,9 @@ class Thruster:
     weight: float  # Q [-]
     torque_ratio: float  # k, reaction torque about d per newton of thrust [m]
     loss: PropellerLoss | TunnelLoss | None  # None: the Bollard limits hold at every speed
+    max_rate: float = 0.0  # greatest change of thrust, 0: unlimited [N/s]
+    cutoff: float = 0.0  # kappa, share of Bollard thrust below which a limit is not worth using
+    enabled: bool = True
 
     @property
     def column(self) -> np.ndarray:
@@ -92,7 +95,8 @@ def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
     position, direction = (tuple((signs * values[key]).tolist())
                            for key in ('position', 'direction'))
     return Thruster(name, position, direction, values['bollard_thrust'], values['weight'],
-                    values['torque_ratio'], _LOSSES[values['model']](name, values))
+                    values['torque_ratio'], _LOSSES[values['model']](name, values),
+                    values['max_rate'], values['cutoff'], values['enabled'])
 
 
 def _frozen(array: np.ndarray) -> np.ndarray:

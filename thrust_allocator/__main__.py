@@ -6,7 +6,7 @@ import sys
 
 import rclpy
 from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from thrust_allocator.node import ThrustAllocator
@@ -53,15 +53,19 @@ def main(args: Sequence[str] | None = None) -> int:
     try:
         while not signals and not node.interrupted:
             executor.spin_once(timeout_sec=0.1)
-    except ExternalShutdownException:
-        print(f'{NODE_NAME}: the ROS context was shut down from outside: the last setpoints stand',
-              file=sys.stderr)
-        return 1
-    finally:
+    except Exception:  # of nearly any type if the context is gone: even a publisher complains
         if rclpy.ok():
+            raise
+    finally:
+        if alive := rclpy.ok():
             node.stop()
         rclpy.try_shutdown()
-    return 0
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # Python, on its way out, would let them kill it
+    if not alive:
+        print(f'{NODE_NAME}: the ROS context was shut down from outside: the last setpoints stand',
+              file=sys.stderr)
+    return 0 if alive else 1
 
 
 if __name__ == '__main__':

@@ -266,8 +266,12 @@ class ThrustAllocator(Node):
     def stop(self) -> None:
         """Publish zero setpoints for the last time and wait until they have been delivered."""
         self._timer.cancel()
-        self._publish(self._limits(self._now()), np.zeros_like(self._setpoints), np.zeros(6),
-                      np.zeros(6))
+        zeros = np.zeros_like(self._setpoints)
+        try:
+            self._publish(self._limits(self._now()), zeros, np.zeros(6), np.zeros(6))
+        except Exception:  # what has ended the node may lie in there: zeros all the same
+            self._setpoints_message.data = float64s(zeros)
+            self._setpoints_publisher.publish(self._setpoints_message)
         self._setpoints_publisher.wait_for_all_acked(ACKNOWLEDGE)
         time.sleep(LINGER)
 

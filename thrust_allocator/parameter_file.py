@@ -117,7 +117,7 @@ def _sections(document: Any, prefix: str, path: str) -> Iterator[tuple[str, dict
 def _flat(content: dict, prefix: str) -> Iterator[tuple[str, Any]]:
     for key, value in content.items():
         name = f'{prefix}{key}'
-        if isinstance(value, dict):
+        if isinstance(value, dict) and value:
             yield from _flat(value, f'{name}.')
         else:
             _check_value(name, value)

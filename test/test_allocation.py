@@ -160,7 +160,7 @@ def test_refuses_weights_beyond_double_precision():
 def test_osqp_finds_the_optimum_by_itself(monkeypatch):
     """Started from zero instead of from the optimum, OSQP arrives at the same thrusts."""
     monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
-        0.0 * limits[0], np.zeros(limits.shape[1], dtype=np.int8)))
+        0.0 * limits[0], 0.0 * limits[0], np.zeros(limits.shape[1], dtype=np.int8)))
     vehicle = mt2012()
     problem, bounds = AllocationProblem(vehicle), ThrustBounds(vehicle)
     for speed, thrusts, *_ in PAPER_TEST:
@@ -174,7 +174,8 @@ def test_unsolved_tick_stays_inside_the_bounds_and_says_so(monkeypatch):
     """If OSQP runs out of iterations, the answer is finite, inside the bounds and marked."""
     monkeypatch.setattr(allocation_module, 'MAX_ITERATIONS', 1)
     monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
-        0.0 * limits[0] - 50.0, np.zeros(limits.shape[1], dtype=np.int8)))
+        0.0 * limits[0] - 50.0, np.clip(-50.0, *limits),
+        np.zeros(limits.shape[1], dtype=np.int8)))
     vehicle = mt2012()
     wrench, velocity = paper_test(0.9)
     limits = ThrustBounds(vehicle)(velocity)

@@ -75,7 +75,7 @@ def test_the_start_of_osqp_is_broken(bench, monkeypatch, broken):
     before = peer.steps(3, WRENCH, TWIST)[-1]
     with monkeypatch.context() as patch:
         patch.setattr(allocation_module.ActiveSet, 'solve', lambda self, wrench, limits: (
-            np.full(5, broken), np.zeros(5, dtype=np.int8)))
+            np.full(5, broken), np.full(5, broken), np.zeros(5, dtype=np.int8)))
         for wrench in (OTHER, WRENCH):
             tick = peer.step(wrench)
             assert inside_limits(tick) and rest_of(wrench, tick) < 1e-9

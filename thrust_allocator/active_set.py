@@ -1,11 +1,21 @@
-"""A primal active-set method that hands OSQP the optimum to start from."""
+"""A parametric active-set method that hands OSQP the optimum to start from."""
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 CACHED_SETS = 256  # a vehicle meets a few dozen; bounded, because p thrusters have 3^p
-ROUNDING = 1e-10  # a bound hinders a thruster by more than this share of the largest thrust
+
+
+class Response(NamedTuple):
+    """What follows from which thrusters are held at which bound."""
+
+    matrix: np.ndarray  # (p, m): what each thruster gives per unit of the wrench that is left
+    columns: np.ndarray  # (m, h): B of those held
+    held: np.ndarray  # (h,) thrusters that are held
+    bounds: np.ndarray  # (h,) places of their bounds in the flat limits
+    at_bound: np.ndarray  # (p,) int8: -1 at the lower, 1 at the upper bound, 0 free
 
 
 class ActiveSet:
@@ -16,13 +26,16 @@ class ActiveSet:
 
     Hold some thrusters at a bound. What each thruster would give if its own bound did not count is
     then linear in f and in the bounds of those held, by matrices that are computed once per set.
-    If those held would go beyond their bound and the others would not, the set is the optimum's.
-    From one tick to the next it rarely changes, and then confirming it is all.
+    If exactly those held would go beyond their bound, the set is the optimum's. From one tick to
+    the next it rarely changes, and then confirming it is all.
 
-    Where it changes, the method steps from a feasible point towards the optimum of the present
-    set, holds the first thruster that meets a bound on the way, and once none does, frees the one
-    whose bound hinders most (Nocedal and Wright, Numerical Optimization, 2006, section 16.5). The
-    cost falls at every step, so it ends.
+    Where it changes, f and the limits are moved in a straight line from those of the last tick to
+    the new ones, and the optimum is followed: along the line the thrusts that would be given are
+    linear, until one meets a bound, where it is held, or comes back from one, where it is let go
+    (Best, 1996; Ferreau, Bock and Diehl, 2008). Each step is one such change, mostly the only one.
+
+    A set is written as 2 p bytes, 0 or 1: whether each thruster would give more than its lower
+    limit, then whether more than its upper one. Held at the lower bound is 0, 0, at the upper 1, 1.
     """
 
     def __init__(self, matrix: np.ndarray, thrust_weights: np.ndarray,
@@ -34,89 +47,100 @@ class ActiveSet:
         :param thrust_weights: diagonal of Q, (p,), > 0.
         :param wrench_weights: diagonal of R, (m,), > 0.
         """
-        self._matrix = matrix
+        self._matrix = np.ascontiguousarray(matrix)
         self._per_multiplier = matrix / thrust_weights
         self._compliance = np.diag(1.0 / wrench_weights)
         self._response = lru_cache(maxsize=CACHED_SETS)(self._compute_response)
-        self._sides = bytes(len(thrust_weights))  # of an int8 array: -1 lower, 0 free, +1 upper
+        p = matrix.shape[1]
+        self._start(p)
 
-    def solve(self, wrench: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _start(self, p: int) -> None:
+        """Take the optimum of p thrusters for f = 0 and limits around 0 for that of last tick."""
+        self._beyond = bytes(p * [1] + p * [0])
+        self._wanted, self._limits = np.zeros(p), np.repeat([[-1.0], [1.0]], p, axis=1)
+
+    def solve(self, wrench: np.ndarray,
+              limits: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """
-        Return what each thruster would give at the optimum if its own bound did not count.
+        Return the optimum.
 
         :param wrench: f over the controlled DOFs, (m,).
         :param limits: (2, p), row 0 lower, row 1 upper, not below it.
-        :return: the unbounded thrusts (p,), which cut to the limits are the optimum, and which
-            bound holds each thruster: -1 lower, 0 none, 1 upper, (p,) int8. In the rare case that
-            rounding keeps the method from ending in 20 + 10 p steps, it is only near the optimum.
+        :return: what each thruster would give if its own bound did not count, (p,); the optimum,
+            which is that cut to the limits, (p,); and which bound holds each thruster: -1 lower,
+            0 none, 1 upper, (p,) int8. In the rare case that rounding keeps the method from ending
+            in 20 + 10 p steps, it is only near the optimum, and the next tick starts from f = 0.
         """
-        wanted = self._wanted(wrench, limits, self._sides)
-        sides = sides_of(wanted, limits)
-        if (key := sides.tobytes()) != self._sides:
-            wanted = self._search(wrench, limits, wanted, sides)
-            sides = sides_of(wanted, limits)
-            key = sides.tobytes()
-        self._sides = key
-        return wanted, sides
+        beyond = self._beyond
+        response = self._response(beyond)
+        bounds = limits.take(response.bounds)
+        wanted = response.matrix.dot(wrench - response.columns.dot(bounds))
+        now = (wanted > limits).tobytes()
+        if now == beyond:
+            thrusts = wanted.copy()
+            thrusts[response.held] = bounds
+        else:
+            wanted, beyond = self._follow(wrench, limits, wanted, now)
+            thrusts = np.minimum(np.maximum(wanted, limits[0]), limits[1])
+            response = self._response(beyond)
+        self._beyond, self._wanted, self._limits = beyond, wanted, limits
+        if now != beyond and (wanted > limits).tobytes() != beyond:
+            self._start(len(wanted))
+        return wanted, thrusts, response.at_bound
 
-    def _search(self, wrench: np.ndarray, limits: np.ndarray, wanted: np.ndarray,
-                sides: np.ndarray) -> np.ndarray:
-        """Return what `solve` does, starting from the feasible point next to `wanted`."""
-        lower, upper = limits
-        thrusts = np.clip(wanted, lower, upper)
-        fixed = lower >= upper
-        sides = np.where(fixed, np.int8(1), sides)
-        for _ in range(20 + 10 * len(thrusts)):
-            wanted = self._wanted(wrench, limits, sides.tobytes())
-            step = np.where(sides == 0, wanted - thrusts, 0.0)
-            first, share = _first_blocked(thrusts, step, lower, upper)
-            if share < 1.0:
-                sides[first] = 1 if step[first] > 0.0 else -1
-                thrusts += share * step
-                thrusts[first] = upper[first] if step[first] > 0.0 else lower[first]
-                continue
-            thrusts += step
-            hindered = np.where(fixed, 0.0, sides * (thrusts - wanted))
-            most = hindered.argmax()
-            if hindered[most] <= ROUNDING * np.abs(thrusts).max():
+    def _follow(self, wrench: np.ndarray, limits: np.ndarray, wanted: np.ndarray,
+                goal: bytes) -> tuple[np.ndarray, bytes]:
+        """Return the thrusts wanted at the optimum, and its set; `wanted` is of the last set."""
+        changes = _differences(self._beyond, goal)
+        if len(changes) > 1:  # all at once is it more often than not, if there are many thrusters
+            gap = self._gap(wrench, limits, goal)
+            if (gap > 0.0).tobytes() == goal:
+                return gap[0] + limits[0], goal
+        here, end = self._wanted - self._limits, wanted - limits
+        present = bytearray(self._beyond)
+        for _ in range(20 + 10 * len(wanted)):
+            first = changes[0] if len(changes) == 1 else min(
+                changes, key=lambda place: _share(here, end, place))
+            present[first] ^= 1
+            gap = self._gap(wrench, limits, bytes(present))
+            goal = (gap > 0.0).tobytes()
+            if goal == present:
                 break
-            sides[most] = 0
-        return wanted
+            here, end = here + _share(here, end, first) * (end - here), gap
+            changes = _differences(present, goal)
+        return gap[0] + limits[0], bytes(present)
 
-    def _wanted(self, wrench: np.ndarray, limits: np.ndarray, sides: bytes) -> np.ndarray:
-        held, to_wrench, to_bounds = self._response(sides)
-        return to_wrench @ wrench - to_bounds @ limits.take(held)
+    def _gap(self, wrench: np.ndarray, limits: np.ndarray, beyond: bytes) -> np.ndarray:
+        """Return how far each thruster would go beyond its lower and upper limit, (2, p) [N]."""
+        response = self._response(beyond)
+        return response.matrix.dot(
+            wrench - response.columns.dot(limits.take(response.bounds))) - limits
 
-    def _compute_response(self, sides: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _compute_response(self, beyond: bytes) -> Response:
         """
         Return how the unbounded thrusts respond while some thrusters are held at a bound.
 
         Each free thruster gives b_i^T lambda / q_i, where the multiplier lambda = R (f - B x) of
         the wrench solves (R^-1 + B_F Q_F^-1 B_F^T) lambda = f - B_H x_H over the free thrusters F
         and those held H: six equations at most, however many thrusters there are.
-
-        :param sides: bytes of the (p,) array of -1, 0 and 1.
-        :return: indices (h,) of the bounds that hold into the flat limits, the response (p, m) to
-            f, and (p, h) to those bounds, to be taken off.
         """
-        sides = np.frombuffer(sides, dtype=np.int8)
-        free, held = np.flatnonzero(sides == 0), np.flatnonzero(sides)
-        system = self._compliance + self._per_multiplier[:, free] @ self._matrix[:, free].T
-        to_wrench = np.linalg.solve(system, self._per_multiplier).T.copy()
-        in_limits = held + len(sides) * (sides[held] > 0)
-        return in_limits, to_wrench, to_wrench @ self._matrix[:, held]
+        above_lower, above_upper = np.frombuffer(beyond, dtype=np.bool_).reshape(2, -1)
+        free = above_lower > above_upper
+        held = np.flatnonzero(~free)
+        system = self._compliance + (self._per_multiplier * free) @ self._matrix.T
+        at_bound = above_lower.view(np.int8) + above_upper.view(np.int8) - np.int8(1)
+        at_bound.flags.writeable = False  # shared by all ticks that end in this set
+        return Response(
+            np.linalg.solve(system, self._per_multiplier).T.copy(), self._matrix.take(held, axis=1),
+            held, held + len(free) * above_upper.take(held), at_bound)
 
 
-def sides_of(wanted: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    """Return for each thruster which limit `wanted` lies beyond: -1, 0 or 1, (p,) int8."""
-    lower, upper = limits
-    return (wanted > upper).view(np.int8) - (wanted < lower).view(np.int8)
+def _differences(one: bytes, other: bytes) -> list[int]:
+    return [place for place, (a, b) in enumerate(zip(one, other)) if a != b]
 
 
-def _first_blocked(thrusts: np.ndarray, step: np.ndarray, lower: np.ndarray,
-                   upper: np.ndarray) -> tuple[int, float]:
-    """Return which thruster meets a bound first along `step`, and at what share of it."""
-    room = np.where(step > 0.0, upper - thrusts, thrusts - lower)
-    share = np.divide(room, np.abs(step), out=np.ones_like(step), where=np.abs(step) > room)
-    first = int(share.argmin())
-    return first, share[first]
+def _share(here: np.ndarray, end: np.ndarray, place: int) -> float:
+    """Return at what share of the way from `here` to `end` the gap at `place` changes its sign."""
+    start = here.item(place)
+    way = start - end.item(place)
+    return max(start / way, 0.0) if way else 0.0

@@ -4,13 +4,13 @@ from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.active_set import ActiveSet, sides_of
+from thrust_allocator.active_set import ActiveSet
 from thrust_allocator.parameter_types import ParameterError
 from thrust_allocator.solver import Solver
 from thrust_allocator.vehicle import Vehicle
 
 TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
-ROUNDING = 10.0 * np.finfo(float).eps  # of the whitened gradient, times the condition of L
+ROUNDING = 4.0 * np.finfo(float).eps  # of the whitened gradient, times thrusters and condition
 MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
 WORST_CONDITION = 1e13  # of the Hessian; beyond it double precision has nothing left to give
 
@@ -66,7 +66,7 @@ class AllocationProblem:
         # L^T by QR, which does not square the condition number as factorising P itself would
         root = np.vstack([np.diag(np.sqrt(thrust_weights)),
                           np.sqrt(wrench_weights)[:, np.newaxis] * matrix])
-        self._factor = np.linalg.qr(root, mode='r')  # L^T, (p, p) upper triangular
+        self._factor = np.ascontiguousarray(np.linalg.qr(root, mode='r'))  # L^T, (p, p)
         singular = np.linalg.svd(self._factor, compute_uv=False)
         if singular[0]**2 > WORST_CONDITION * singular[-1]**2:
             raise ParameterError(
@@ -74,14 +74,15 @@ class AllocationProblem:
                 f'down to {smallest:g}; with these positions that is beyond double precision, must '
                 'lie closer together')
         self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
-        self._gradient = -self._thrusts.T @ (matrix.T * wrench_weights)  # q = gradient @ f
+        # q = gradient @ f
+        self._gradient = np.ascontiguousarray(-self._thrusts.T @ (matrix.T * wrench_weights))
 
         self._settings = {
             'verbose': False, 'scaling': 0, 'polishing': False, 'max_iter': MAX_ITERATIONS,
             'check_termination': 1, 'check_dualgap': False,
             'eps_abs': TOLERANCE * np.abs(vehicle.bollard_thrust).max(),
             # A wrench far out of reach makes a gradient so large that its rounding matters
-            'eps_rel': ROUNDING * singular[0] / singular[-1],
+            'eps_rel': ROUNDING * len(singular) * singular[0] / singular[-1],
             # By iterations and never by the clock, so that a run repeats bit for bit
             'adaptive_rho': 1, 'rho': float(np.clip(singular[0] * singular[-1], 1e-6, 1e6))}
         self._solver = Solver(self._thrusts, **self._settings)
@@ -97,19 +98,19 @@ class AllocationProblem:
         """
         lower, upper = limits
         command = wrench[self._controlled]
-        wanted, at_bound = self._active_set.solve(command, limits)
+        wanted, thrusts, at_bound = self._active_set.solve(command, limits)
         if not isfinite(wanted.sum()):  # OSQP would call NaN solved
-            wanted = np.zeros_like(wanted)
-        thrusts = np.minimum(np.maximum(wanted, lower), upper)
+            wanted = thrusts = np.clip(0.0, lower, upper)
         status, iterations = self._solver.solve(
-            self._gradient @ command, lower, upper,
-            self._factor @ thrusts, self._thrust_weights * (wanted - thrusts))
+            self._gradient.dot(command), lower, upper,
+            self._factor.dot(thrusts), self._thrust_weights * (wanted - thrusts))
         if status == 'solved' and iterations > 1:  # the start was not the optimum
             whitened, multipliers = self._solver.optimum
             wanted = self._thrusts @ whitened + multipliers / self._thrust_weights
-            thrusts, at_bound = np.clip(wanted, lower, upper), sides_of(wanted, limits)
+            thrusts = np.clip(wanted, lower, upper)
+            at_bound = (wanted > upper).view(np.int8) - (wanted < lower).view(np.int8)
         elif status != 'solved':
             self._solver = Solver(self._thrusts, **self._settings)  # nothing may linger in it
-        achieved = self._matrix @ thrusts
+        achieved = self._matrix.dot(thrusts)
         return Allocation(
             thrusts, limits, achieved, wrench - achieved, at_bound, status, iterations)

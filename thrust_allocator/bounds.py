@@ -28,7 +28,7 @@ class ThrustBounds:
         :return: (2, p), row 0 lower (<= 0), row 1 upper (>= 0), within the Bollard limits [N].
         """
         limits = [law(*flow) for law, flow in zip(self._laws, self._flow(velocity))]
-        return np.array(tuple(zip(*limits)))
+        return np.array(limits).T.copy()
 
 
 def rate_limited(limits: np.ndarray, last: np.ndarray, step: np.ndarray) -> np.ndarray:

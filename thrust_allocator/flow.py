@@ -28,7 +28,7 @@ class FlowAtThrusters:
             [m/s, rad/s].
         :return: for each thruster its speed along its thrust axis and, >= 0, across it [m/s].
         """
-        flat = (self._components @ velocity).tolist()
+        flat = self._components.dot(velocity).tolist()
         return [(along, hypot(one, other))
                 for along, one, other in zip(flat[0::3], flat[1::3], flat[2::3])]
 

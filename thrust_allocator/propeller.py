@@ -61,11 +61,9 @@ class PropellerLoss:
         :return: function of the thruster's speed along its thrust axis and across it, the latter
             >= 0 [m/s], that gives (lower <= 0, upper >= 0) [N].
         """
-        reverse, forward = -bollard_thrust[0], bollard_thrust[1]
-        reverse_loss, forward_loss = self.speed_loss
-        reverse_opposed, forward_opposed = self.opposed_loss
-        most_reverse = (1.0 - self.opposed_floor) * reverse
-        most_forward = (1.0 - self.opposed_floor) * forward
+        reverse, forward = (
+            _sense(bollard, axial, opposed, self.opposed_floor) for bollard, axial, opposed
+            in zip((-bollard_thrust[0], bollard_thrust[1]), self.speed_loss, self.opposed_loss))
         first_slope, first_min = self.critical_angle_slope, self.critical_angle_min
         second_start = pi / 2 + self.second_critical_angle_offset
         second_slope = self.second_critical_angle_slope
@@ -76,20 +74,25 @@ class PropellerLoss:
             first = max(pi / 2 - first_slope * speed, first_min)
             second = min(max(second_start + second_slope * speed, first),
                          SECOND_CRITICAL_ANGLE_MAX)
-            lower = _limit(reverse, pi - angle, first, second, reverse_loss * speed,
-                           min(reverse_opposed * speed, most_reverse))
-            upper = _limit(forward, angle, first, second, forward_loss * speed,
-                           min(forward_opposed * speed, most_forward))
-            return 0.0 - lower, upper  # -lower could be -0.0
+            return (0.0 - reverse(pi - angle, speed, first, second),  # -x could be -0.0
+                    forward(angle, speed, first, second))
 
         return limits
 
 
-def _limit(bollard: float, incoming: float, first: float, second: float, axial_loss: float,
-           opposed_loss: float) -> float:
+def _sense(bollard: float, axial: float, opposed: float, floor: float) -> Callable[
+        [float, float, float, float], float]:
     """Return the limit of one sense of thrust, which sees the flow at the angle `incoming`."""
-    if incoming <= first:
-        bollard -= axial_loss * (1.0 - sin(pi / 2 * incoming / first))  # eq. 3.11
-    elif incoming > second:
-        bollard -= opposed_loss * (1.0 - cos(pi / 2 * (incoming - second) / (pi - second)))
-    return bollard if bollard > 0.0 else 0.0
+    most = (1.0 - floor) * bollard  # that opposed flow can take [N]
+
+    def limit(incoming: float, speed: float, first: float, second: float) -> float:
+        if incoming <= first:
+            left = bollard - axial * speed * (1.0 - sin(pi / 2 * incoming / first))  # eq. 3.11
+        elif incoming <= second:
+            left = bollard
+        else:
+            left = bollard - min(opposed * speed, most) * (
+                1.0 - cos(pi / 2 * (incoming - second) / (pi - second)))
+        return left if left > 0.0 else 0.0
+
+    return limit

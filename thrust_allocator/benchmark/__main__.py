@@ -1,0 +1,75 @@
+"""Measure the allocator: `python -m thrust_allocator.benchmark`, all of it or some parts."""
+
+import argparse
+from importlib.metadata import PackageNotFoundError, version
+import os
+from pathlib import Path
+import platform
+import sys
+
+from thrust_allocator.benchmark import growth, node_cost, solvers
+
+PARTS = ('solvers', 'growth', 'node')
+PACKAGES = ('numpy', 'osqp', 'scipy', 'quadprog', 'daqp', 'casadi', 'ros-jazzy-rclpy')
+
+
+def machine() -> str:
+    """Say on what the figures were measured."""
+    try:
+        lines = Path('/proc/cpuinfo').read_text(encoding='utf-8').splitlines()
+        names = [line.split(':', 1)[1].strip() for line in lines if line.startswith('model name')]
+    except OSError:
+        names = []
+    processor = names[0] if names else platform.processor() or platform.machine()
+    return (f'{processor}, {os.cpu_count()} cores; {platform.system()} {platform.release()}; '
+            f'Python {platform.python_version()}; ' + ', '.join(map(_version, PACKAGES)))
+
+
+def _version(package: str) -> str:
+    try:
+        return f'{package} {version(package)}'
+    except PackageNotFoundError:
+        return f'{package} missing'
+
+
+def _svg(path: str) -> Path:
+    chosen = Path(path)
+    if chosen.suffix != '.svg' or not chosen.absolute().parent.is_dir():
+        raise argparse.ArgumentTypeError(
+            f'{path} must end in .svg and lie in a folder that exists')
+    return chosen
+
+
+def main() -> int:
+    """Run the parts that the command line names and print their tables."""
+    parser = argparse.ArgumentParser(
+        prog='python -m thrust_allocator.benchmark',
+        description='Measure the allocator beside others. The extra `bench` brings them along; '
+        'one that is not installed is reported as missing.')
+    parser.add_argument('parts', nargs='*', metavar='PART',
+                        help=f'what to measure, of {", ".join(PARTS)}; without one, all')
+    parser.add_argument('--plot', type=_svg, metavar='FILE',
+                        help='draw the growth as an SVG file; needs matplotlib and part growth')
+    parser.add_argument('--quick', action='store_true', help='a short run, for a first look')
+    options = parser.parse_args()
+    unknown = [part for part in options.parts if part not in PARTS]
+    if unknown:
+        parser.error(f'{unknown[0]} is no part, must be one of {", ".join(PARTS)}')
+    parts = options.parts or PARTS
+    if options.plot:
+        if 'growth' not in parts:
+            parser.error('--plot draws the growth: name that part too, or none')
+        if _version('matplotlib').endswith('missing'):
+            parser.error('--plot needs matplotlib, which is not installed; the extra is `bench`')
+    print(f'{machine()}\n', flush=True)
+    if 'solvers' in parts:
+        solvers.report(*((300, 1) if options.quick else ()))
+    if 'growth' in parts:
+        growth.report(*((300, 1) if options.quick else ()), plot=options.plot)
+    if 'node' in parts:
+        node_cost.report(options.quick)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

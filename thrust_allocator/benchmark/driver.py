@@ -1,0 +1,110 @@
+"""The process that stands for the rest of the vehicle while the node's cost is measured."""
+
+from collections import deque
+from collections.abc import Sequence
+import json
+import sys
+import time
+
+from geometry_msgs.msg import Wrench
+from nav_msgs.msg import Odometry
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Float64MultiArray
+from thrust_allocator.benchmark.ticks import mt2012, smooth_walk
+from thrust_allocator.frames import frd_signs
+from thrust_allocator.node import INPUT, OUTPUT
+
+GOLDEN = 0.6180339887498949  # its multiples fall evenly into a period
+PATIENCE = 20.0  # longest wait for the first answer [s]
+SETTLING = 0.5  # from the first answer to the measurement [s]
+SAME = 1e-9  # of the command's surge, which tells one command from another [N]
+
+
+class Driver(Node):
+    """Sends odometry and command at a rate, and hears all that is published at every tick."""
+
+    def __init__(self) -> None:
+        super().__init__('driver')
+        self._signs = frd_signs('flu')
+        self._ticks = smooth_walk(mt2012(), 4000).ticks
+        self._sent: deque[tuple[float, int]] = deque(maxlen=100)  # surge [N], system time [ns]
+        self.count = 0  # commands sent
+        self.delays: list[int] = []  # from a command to the setpoints that answer it [ns]
+        self._arrival = 0  # of the newest setpoints, system time [ns]
+        self._achieved = 0.0  # newest achieved surge [N]
+        self._odometry, self._command = Odometry(), Wrench()
+        self._odometry_publisher = self.create_publisher(Odometry, 'odom', INPUT)
+        self._command_publisher = self.create_publisher(Wrench, 'cmd_wrench', INPUT)
+        for kind, topic, callback in (
+                (Float64MultiArray, 'thrust_limits', lambda message: None),
+                (Float64MultiArray, 'thruster_setpoints', self._on_setpoints),
+                (Wrench, 'achieved_wrench', self._on_achieved),
+                (Wrench, 'unallocated_wrench', self._on_unallocated)):
+            self.create_subscription(kind, topic, callback, OUTPUT)
+
+    def send(self) -> None:
+        """Send the next tick of the walk."""
+        tick = self._ticks[self.count % len(self._ticks)]
+        self.count += 1
+        velocity = (self._signs * tick.velocity).tolist()
+        linear, angular = self._odometry.twist.twist.linear, self._odometry.twist.twist.angular
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = velocity
+        wrench = (self._signs * tick.wrench).tolist()
+        force, torque = self._command.force, self._command.torque
+        force.x, force.y, force.z, torque.x, torque.y, torque.z = wrench
+        self._odometry_publisher.publish(self._odometry)
+        self._sent.append((force.x, time.time_ns()))
+        self._command_publisher.publish(self._command)
+
+    def _on_setpoints(self, message: Float64MultiArray, info: dict) -> None:
+        self._arrival = info['received_timestamp']
+
+    def _on_achieved(self, message: Wrench) -> None:
+        self._achieved = message.force.x
+
+    def _on_unallocated(self, message: Wrench) -> None:
+        """Find the command that this tick answers, and note its delay the first time."""
+        command = self._achieved + message.force.x
+        for i, (surge, sent) in enumerate(self._sent):
+            if abs(surge - command) < SAME:
+                self.delays.append(self._arrival - sent)
+                for _ in range(i + 1):  # what is older will not be answered any more
+                    self._sent.popleft()
+                return
+
+
+def main(args: Sequence[str]) -> int:
+    """Drive the node in this namespace at a rate [Hz] for a time [s]; print the delays [ns]."""
+    rate, seconds = float(args[1]), float(args[2])
+    rclpy.init(args=[args[0], *args[3:]])
+    driver, executor = Driver(), SingleThreadedExecutor()
+    executor.add_node(driver)
+    begin = time.monotonic()
+
+    def drive_until(enough: float) -> None:
+        while time.monotonic() < enough:
+            # Evenly spread over the period, whatever the phase of the node's own timer
+            due = begin + (driver.count + driver.count * GOLDEN % 1.0) / rate
+            if time.monotonic() >= due:
+                driver.send()
+            else:
+                executor.spin_once(timeout_sec=min(due, enough) - time.monotonic())
+
+    while not driver.delays:
+        if time.monotonic() - begin > PATIENCE:
+            print('driver: no answer to any command', file=sys.stderr)
+            return 1
+        drive_until(time.monotonic() + 0.1)
+    drive_until(time.monotonic() + SETTLING)
+    print('measuring', flush=True)
+    driver.delays.clear()
+    drive_until(time.monotonic() + seconds)
+    print(json.dumps(driver.delays), flush=True)
+    rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv))

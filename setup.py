@@ -17,7 +17,7 @@ setup(
         (f'share/{package_name}/config', glob('config/*.yaml')),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy', 'osqp>=1.1', 'PyYAML'],
+    install_requires=['setuptools', 'numpy', 'scipy', 'osqp>=1.1', 'PyYAML'],
     extras_require={
         'jazzy': jazzy,
         'test': ['pytest', 'hypothesis', 'daqp', 'scipy', 'flake8'],

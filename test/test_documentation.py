@@ -18,9 +18,10 @@ def shown(default) -> str:
 
 
 def test_table_of_parameters_equals_the_code():
-    """Each parameter has its row: name, what is allowed, unit, default, meaning; and no other."""
+    """Each parameter has its row: name, what is allowed, unit, default, live, meaning; no other."""
     expected = {
-        f'| `{one.name}` | {one.type} | {one.unit or "–"} | {shown(one.default)} | {one.meaning} |'
+        f'| `{one.name}` | {one.type} | {one.unit or "–"} | {shown(one.default)} | '
+        f'{"yes" if one.live else "no"} | {one.meaning} |'
         for one in (*NODE, *THRUSTER, *MODELS['propeller'], *MODELS['tunnel'])}
     rows = set(re.findall(r'^\| `.*$', (ROOT / 'doc/parameters.md').read_text('utf-8'), re.M))
     read_first = {row for row in rows if row.startswith(('| `thruster_names`', '| `model`'))}

@@ -8,7 +8,8 @@ import pytest
 import thrust_allocator
 
 PACKAGE = Path(thrust_allocator.__file__).parent
-WITH_ROS = {'node', 'messages', 'demo', 'soak', '__main__'}
+WITH_ROS = {'node', 'ros_parameters', 'messages', 'outputs', 'markers', 'demo', 'soak',
+            '__main__'}
 MODULES = sorted({file.stem for file in PACKAGE.glob('*.py')} - WITH_ROS - {'__init__'})
 
 

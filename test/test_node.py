@@ -13,6 +13,8 @@ OUT = {'thrust_limits': 'std_msgs/msg/Float64MultiArray',
        'unallocated_wrench': 'geometry_msgs/msg/Wrench'}
 IN = {'cmd_wrench': 'geometry_msgs/msg/Wrench', 'odom': 'nav_msgs/msg/Odometry',
       'current': 'geometry_msgs/msg/Vector3Stamped'}
+FOR_TOOLS = {'thruster_states': 'sensor_msgs/msg/JointState',
+             'thruster_markers': 'visualization_msgs/msg/MarkerArray'}
 REPORTS = {'/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray']}  # in every namespace
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # between frd and flu axes
 WRENCH = np.array([60.0, 10.0, 20.0, 5.0, 30.0, -15.0])
@@ -36,7 +38,7 @@ def test_topics(start, namespace):
     _, peer = start(remap=f'__ns:={namespace or "/"}')
     who = ('thrust_allocator', namespace or '/')
     for found, expected, absolute in (
-            (peer.get_publisher_names_and_types_by_node(*who), OUT, REPORTS),
+            (peer.get_publisher_names_and_types_by_node(*who), OUT | FOR_TOOLS, REPORTS),
             (peer.get_subscriber_names_and_types_by_node(*who), IN, {})):
         own = {name: types for name, types in found
                if name not in ('/rosout', '/parameter_events')}  # of every ROS node

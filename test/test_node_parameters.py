@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from rclpy.parameter import Parameter
-from test_node import assert_alike, NAMES, WRENCH
+from test_node import NAMES
 from thrust_allocator.parameter_types import ParameterError
 
 
@@ -23,27 +23,6 @@ def test_parameters_are_readable(start, variant):
         found = node.get_parameter(name)
         assert found.type_ == Parameter(name, value=value).type_
         assert (list(found.value) if isinstance(value, list) else found.value) == value
-
-
-def test_only_enabled_can_be_changed(start):
-    """Setting any other parameter of the vehicle is refused with a reason, and changes nothing."""
-    node, peer = start()
-    before = peer.settle(WRENCH)
-    names = [name for name in node.get_parameters_by_prefix('') if name.startswith((
-        'rate', 'thruster', 'wrench', 'message', 'vehicle', 'water', 'start_enabled', 'odom',
-        'current', 'fallback'))]
-    assert {'rate', 'thruster_names', 'thrusters.up.weight', 'thrusters.up.max_rate',
-            'wrench_timeout', 'odometry_timeout', 'fallback_velocity'} <= set(names)
-    for name in names:
-        value = node.get_parameter(name).value
-        other = 2.0 * value if isinstance(value, float) else value
-        result, = node.set_parameters([Parameter(name, value=other)])
-        if name.endswith('.enabled'):
-            assert result.successful
-        else:
-            assert not result.successful and result.reason
-            assert node.get_parameter(name).value == value
-    assert_alike(peer.settle(WRENCH), before)
 
 
 def test_enabled_can_be_changed(start):

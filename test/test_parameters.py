@@ -243,6 +243,8 @@ def test_the_defaults_are_those_of_the_contract():
         **required, 'rate': 50.0, 'water_density': 1025.0, 'vehicle_frame': 'frd',
         'message_frame': 'flu', 'start_enabled': True, 'wrench_timeout': 0.5,
         'odometry_timeout': 0.5, 'current_timeout': 10.0, 'fallback_velocity': (0.0, 0.0, 0.0),
+        'stamped_wrench': False, 'velocity_type': 'odometry', 'setpoint_unit': 'newton',
+        'publish_individual': False, 'marker_frame': 'base_link',
         **{f'wrench_weights.{dof}': 10000.0 for dof in DOFS},
         UP + 'enabled': True, UP + 'weight': 1.0, UP + 'max_rate': 0.0, UP + 'cutoff': 0.0,
         UP + 'torque_ratio': 0.0, UP + 'critical_angle_slope': 0.2,

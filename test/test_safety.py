@@ -185,7 +185,7 @@ def test_an_atomic_set_is_refused_whole(bench):
     peer = bench()
     before = peer.steps(3, WRENCH)[-1]
     result, = peer.set_parameters_of_node(
-        [Parameter('thrusters.up.enabled', value=False), Parameter('rate', value=20.0)],
+        [Parameter('thrusters.up.enabled', value=False), Parameter('rate', value=-20.0)],
         atomically=True)
     assert not result.successful and result.reason
     assert_array_equal(peer.step()['thruster_setpoints'], before['thruster_setpoints'])

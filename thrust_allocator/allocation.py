@@ -52,27 +52,33 @@ class AllocationProblem:
         :raises ParameterError: if the weights and the geometry make the problem too
             ill-conditioned for double precision.
         """
+        self._essence = _essence(vehicle)
         self._matrix = vehicle.configuration_matrix
         self._controlled = np.flatnonzero(vehicle.wrench_weights)
         matrix = self._matrix[self._controlled]
         # A common factor of Q and R changes nothing; this one makes the smallest weight in Q 1
         thrust_weights = np.array([thruster.weight for thruster in vehicle.thrusters])
         smallest = thrust_weights.min()
-        thrust_weights = thrust_weights / smallest
-        wrench_weights = np.array(vehicle.wrench_weights)[self._controlled] / smallest
-        self._thrust_weights = thrust_weights
-        self._active_set = ActiveSet(matrix, thrust_weights, wrench_weights)
+        with np.errstate(over='ignore', invalid='ignore'):  # refused below
+            thrust_weights = thrust_weights / smallest
+            wrench_weights = np.array(vehicle.wrench_weights)[self._controlled] / smallest
+            root = np.vstack([np.diag(np.sqrt(thrust_weights)),
+                              np.sqrt(wrench_weights)[:, np.newaxis] * matrix])
+            gain = root[len(thrust_weights):] / np.sqrt(thrust_weights)
 
         # L^T by QR, which does not square the condition number as factorising P itself would
-        root = np.vstack([np.diag(np.sqrt(thrust_weights)),
-                          np.sqrt(wrench_weights)[:, np.newaxis] * matrix])
         self._factor = np.ascontiguousarray(np.linalg.qr(root, mode='r'))  # L^T, (p, p)
-        singular = np.linalg.svd(self._factor, compute_uv=False)
-        if singular[0]**2 > WORST_CONDITION * singular[-1]**2:
+        finite = bool(np.isfinite(self._factor).all())
+        singular = np.linalg.svd(self._factor, compute_uv=False) if finite else (np.inf, 0.0)
+        # With most thrusters at a bound, the equations for the rest may be worse than the Hessian
+        worst = np.sqrt(WORST_CONDITION)
+        if singular[0] > worst * singular[-1] or np.linalg.norm(gain, 2) > worst:
             raise ParameterError(
                 f'wrench_weights: are up to {max(vehicle.wrench_weights):g} while thrusters weigh '
                 f'down to {smallest:g}; with these positions that is beyond double precision, must '
                 'lie closer together')
+        self._thrust_weights = thrust_weights
+        self._active_set = ActiveSet(matrix, thrust_weights, wrench_weights)
         self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
         # q = gradient @ f
         self._gradient = np.ascontiguousarray(-self._thrusts.T @ (matrix.T * wrench_weights))
@@ -86,6 +92,10 @@ class AllocationProblem:
             # By iterations and never by the clock, so that a run repeats bit for bit
             'adaptive_rho': 1, 'rho': float(np.clip(singular[0] * singular[-1], 1e-6, 1e6))}
         self._solver = Solver(self._thrusts, **self._settings)
+
+    def for_vehicle(self, vehicle: Vehicle) -> 'AllocationProblem':
+        """Return the problem of the same vehicle after a change: this one if it serves still."""
+        return self if _essence(vehicle) == self._essence else AllocationProblem(vehicle)
 
     def solve(self, wrench: np.ndarray, limits: np.ndarray) -> Allocation:
         """
@@ -114,3 +124,10 @@ class AllocationProblem:
         achieved = self._matrix.dot(thrusts)
         return Allocation(
             thrusts, limits, achieved, wrench - achieved, at_bound, status, iterations)
+
+
+def _essence(vehicle: Vehicle) -> tuple:
+    """Return what the problem depends on, apart from what changes from tick to tick."""
+    return (vehicle.wrench_weights, vehicle.configuration_matrix.tobytes(),
+            tuple(thruster.weight for thruster in vehicle.thrusters),
+            np.abs(vehicle.bollard_thrust).max())

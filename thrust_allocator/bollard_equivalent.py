@@ -52,13 +52,15 @@ def bollard_equivalent(thrust: float, loss: Loss, bollard_thrust: tuple[float, f
     if loss is None or thrust == 0.0:
         return thrust
     side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
+    full = abs(bollard_thrust[side])
     if isinstance(loss, TunnelLoss):
         load = loss.load(across)
         # tau = e exp(-load / e): with y = load / e, y + ln y = ln(load / tau)
-        e = load / wrightomega(log(load) - log(tau)).real if load > 0.0 else tau
+        y = float(wrightomega(log(load) - log(tau)).real) if load > 0.0 else 0.0
+        e = load / y if y > 1.0 else tau * exp(y)  # neither overflows nor divides by 0
     else:
-        full = abs(bollard_thrust[side])
         lost = full - abs(loss.law(bollard_thrust)(along, across)[side])
         half = 0.5 * lost / sqrt(full)  # tau = e - 2 half sqrt(e), a quadratic in sqrt(e)
         e = (half + sqrt(half * half + tau))**2
+    e = min(e, full)  # which rounding could exceed
     return e if side else -e

@@ -16,7 +16,7 @@ class ThrustBounds:
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
-        self._flow = FlowAtThrusters(vehicle.thrusters)
+        self.flow = FlowAtThrusters(vehicle.thrusters)
         self._laws = [_law(thruster) for thruster in vehicle.thrusters]
 
     def __call__(self, velocity: np.ndarray) -> np.ndarray:
@@ -27,7 +27,7 @@ class ThrustBounds:
             [m/s, rad/s].
         :return: (2, p), row 0 lower (<= 0), row 1 upper (>= 0), within the Bollard limits [N].
         """
-        limits = [law(*flow) for law, flow in zip(self._laws, self._flow(velocity))]
+        limits = [law(*flow) for law, flow in zip(self._laws, self.flow(velocity))]
         return np.array(limits).T.copy()
 
 

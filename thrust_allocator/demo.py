@@ -15,7 +15,8 @@ from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
 from thrust_allocator.frames import DOFS, frd_signs
 from thrust_allocator.messages import wrench_components
-from thrust_allocator.node import INPUT, OUTPUT, ThrustAllocator
+from thrust_allocator.node import INPUT, ThrustAllocator
+from thrust_allocator.outputs import OUTPUT
 from thrust_allocator.parameter_file import default_parameter_file, NODE_NAME
 
 NAMESPACE = f'/{NODE_NAME}_demo'

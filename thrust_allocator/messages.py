@@ -1,9 +1,7 @@
 """ROS messages from arrays, and arrays from ROS messages; axes stay as they are."""
 
-from array import array
 from collections.abc import Mapping
 import math
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from geometry_msgs.msg import Quaternion, Twist, Vector3, Wrench
@@ -50,19 +48,9 @@ def array_message(dimensions: list[tuple[str, int]]) -> Float64MultiArray:
     return message
 
 
-def float64s(values: np.ndarray) -> array:
-    """Return what rclpy takes for a float64[] field without converting it number by number."""
-    return array('d', values.tobytes())
-
-
 def status_message(name: str, level: int, text: str,
                    figures: Mapping[str, str]) -> DiagnosticStatus:
     """Return a diagnostic status."""
     return DiagnosticStatus(
         name=name, level=bytes([level]), message=text,
         values=[KeyValue(key=key, value=value) for key, value in figures.items()])
-
-
-def plain(value: Any) -> Any:
-    """Return the value of a ROS parameter as Python reads it from a file."""
-    return list(value) if isinstance(value, array) else value

@@ -3,37 +3,40 @@
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Vector3Stamped, Wrench
+from geometry_msgs.msg import (
+    Twist, TwistStamped, TwistWithCovarianceStamped, Vector3Stamped, Wrench, WrenchStamped)
 from nav_msgs.msg import Odometry
 import numpy as np
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType, JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from std_msgs.msg import Float64MultiArray, Header
+from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 from thrust_allocator.allocation import AllocationProblem
 from thrust_allocator.bounds import rate_limited, ThrustBounds
 from thrust_allocator.diagnosis import allocation_figures, Findings, Level, Period, shortfall
 from thrust_allocator.frames import frd_signs
 from thrust_allocator.inputs import Inputs, NEVER, Received
+from thrust_allocator.markers import thruster_markers
 from thrust_allocator.messages import (
-    array_message, fill_wrench, float64s, plain, quaternion_components, status_message,
-    twist_components, vector_components, wrench_components)
+    quaternion_components, status_message, twist_components, vector_components, wrench_components)
+from thrust_allocator.outputs import Outputs
 from thrust_allocator.parameter_file import NODE_NAME
-from thrust_allocator.parameter_types import Flag, ParameterError
-from thrust_allocator.parameters import Parameters, read_parameters
+from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.parameters import Parameters
+from thrust_allocator.ros_parameters import changed, coerced, declare, take_overrides
 from thrust_allocator.vehicle import Vehicle
+from visualization_msgs.msg import MarkerArray
 
 # Best effort and depth 1 meet any publisher, and only the newest message counts
 INPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 
-ACKNOWLEDGE = Duration(seconds=0.2)  # the longest wait for the last zeros to be acknowledged
-LINGER = 0.1  # [s] more, for subscribers that acknowledge nothing
+LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
 REPORT_PERIOD = 1.0  # [s] between diagnostics
+MARKER_PERIOD = 0.2  # [s] between pictures, if anybody looks
 LATE = 1.5  # periods after the tick before, from which on a tick is late
 
 
@@ -49,9 +52,13 @@ class ThrustAllocator(Node):
         """
         super().__init__(
             NODE_NAME, automatically_declare_parameters_from_overrides=True, **options)
-        parameters = self._declare_vehicle()
+        parameters = take_overrides(self)
+        declare(self, parameters)
+        values = parameters.values
+        self._outputs = Outputs(self, values['thruster_names'], values['setpoint_unit'])
+        self._problem: AllocationProblem | None = None
+        self._timer = None
         self._apply(parameters)
-        self._problem = AllocationProblem(self.vehicle)
         for warning in [*parameters.warnings, *self.vehicle.warnings()]:
             self.get_logger().warning(warning)
 
@@ -60,8 +67,10 @@ class ThrustAllocator(Node):
         self._simulated = self.get_parameter('use_sim_time').value
         self._tick_clock = self.get_clock() if self._simulated else steady
         self._inputs = Inputs()
-        self._enabled = parameters.values['start_enabled']
-        self._setpoints = np.zeros(len(self.vehicle.thrusters))  # last published ones [N]
+        self._enabled = values['start_enabled']
+        p = len(self.vehicle.thrusters)
+        self._setpoints, self._limits_now = np.zeros(p), np.zeros((2, p))  # last published [N]
+        self._velocity = np.zeros(6)  # that the limits were computed for, frd axes
         self._last_tick: int | None = None  # when it began, on the node's clock [ns]
         self._findings = Findings(self.get_logger())
         self._period = Period()
@@ -69,105 +78,96 @@ class ThrustAllocator(Node):
         self._known_dropped = self._inputs.dropped.copy()
         self.interrupted = False  # whether OSQP has caught a SIGINT
 
-        p = len(self.vehicle.thrusters)
-        self._limits_message = array_message([('limits', 2), ('thrusters', p)])
-        self._setpoints_message = array_message([('thrusters', p)])
-        self._achieved_message, self._unallocated_message = Wrench(), Wrench()
-        self._limits_publisher = self.create_publisher(Float64MultiArray, 'thrust_limits', OUTPUT)
-        self._setpoints_publisher = self.create_publisher(
-            Float64MultiArray, 'thruster_setpoints', OUTPUT)
-        self._achieved_publisher = self.create_publisher(Wrench, 'achieved_wrench', OUTPUT)
-        self._unallocated_publisher = self.create_publisher(Wrench, 'unallocated_wrench', OUTPUT)
         self._diagnostics_publisher = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self.create_subscription(Wrench, 'cmd_wrench', self._on_wrench, INPUT)
-        self.create_subscription(Odometry, 'odom', self._on_odometry, INPUT)
-        self.create_subscription(Vector3Stamped, 'current', self._on_current, INPUT)
+        self._marker_publisher = self.create_publisher(MarkerArray, 'thruster_markers', 1)
+        self._subscribe(values['stamped_wrench'], values['velocity_type'])
         self.create_service(SetBool, '~/enable', self._on_enable)
+        self.add_pre_set_parameters_callback(lambda changes: coerced(changes, self._described))
         self.add_on_set_parameters_callback(self._check_change)
-        self.add_post_set_parameters_callback(self._on_change)
+        self.add_post_set_parameters_callback(
+            lambda changes: self._apply(changed(changes, self._described)))
         self._after_messages = self.create_guard_condition(self._tick)
         self.create_timer(REPORT_PERIOD, self._report, clock=steady)
-        try:
-            self._timer = self.create_timer(
-                1.0 / parameters.values['rate'], self._on_timer, clock=self._tick_clock)
-        except (OverflowError, TypeError):  # beyond a float, beyond 64 bits
-            raise ParameterError.wrong('rate', parameters.values['rate'],
-                                       'large enough for its period to fit a clock') from None
+        self.create_timer(MARKER_PERIOD, self._draw, clock=steady)
+        self._timer = self.create_timer(
+            self._tick_period * 1e-9, self._on_timer, clock=self._tick_clock)
         if self._simulated:
             self._jump_handle = self._tick_clock.create_jump_callback(
                 JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1)),
                 post_callback=lambda jump: self._inputs.forget())
 
-    # Parameters
+    def _subscribe(self, stamped_wrench: bool, velocity_type: str) -> None:
+        if stamped_wrench:
+            self.create_subscription(
+                WrenchStamped, 'cmd_wrench', self._on_stamped_wrench, INPUT)
+        else:
+            self.create_subscription(Wrench, 'cmd_wrench', self._on_wrench, INPUT)
+        if velocity_type == 'odometry':
+            self.create_subscription(Odometry, 'odom', self._on_odometry, INPUT)
+            self.create_subscription(Vector3Stamped, 'current', self._on_current, INPUT)
+        elif velocity_type == 'twist':
+            self.create_subscription(
+                TwistStamped, 'twist', lambda message: self._on_twist(message.twist), INPUT)
+        else:
+            self.create_subscription(
+                TwistWithCovarianceStamped, 'twist',
+                lambda message: self._on_twist(message.twist.twist), INPUT)
 
-    def _declare_vehicle(self) -> Parameters:
-        """Take the overrides, check them, and declare every parameter with its value in effect."""
-        given = self.get_parameters_by_prefix('')
-        Flag().read('use_sim_time', given['use_sim_time'].value)
-        own = {
-            name: parameter.value for name, parameter in given.items()
-            if name not in ('use_sim_time', 'start_type_description_service')
-            and not name.startswith('qos_overrides.')}
-        for name in own:
-            self.undeclare_parameter(name)
-        if 'thruster_names' not in own:
-            raise ParameterError(
-                'thruster_names: is missing, must be a list of names; does the top key of the '
-                f"parameter file match the node's name, {self.get_fully_qualified_name()}?")
-        parameters = read_parameters({name: plain(value) for name, value in own.items()})
-        for name, value in parameters.values.items():
-            definition = parameters.definitions[name]
-            self.declare_parameter(name, value, ParameterDescriptor(
-                description=' '.join(filter(None, (
-                    definition.meaning, definition.unit and f'[{definition.unit}]'))),
-                additional_constraints=str(definition.type),
-                read_only=definition.name != 'enabled'), ignore_override=True)
-        return parameters
+    # Parameters
 
     def _check_change(self, changes: list[Parameter]) -> SetParametersResult:
         if any(change.name == 'use_sim_time' for change in changes):
             return SetParametersResult(
                 successful=False, reason='use_sim_time: is read-only, must be set at start')
         try:
-            Vehicle.from_parameters(self._changed(changes))
+            parameters = changed(changes, self._described)
+            self._problem.for_vehicle(Vehicle.from_parameters(parameters))
+            _period(parameters.values['rate'])
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
-
-    def _on_change(self, changes: list[Parameter]) -> None:
-        self._apply(self._changed(changes))
-
-    def _changed(self, changes: list[Parameter]) -> Parameters:
-        given = dict(self._described.values)
-        given.update((change.name, plain(change.value)) for change in changes
-                     if change.name in given)
-        return read_parameters(given)
 
     def _apply(self, parameters: Parameters) -> None:
         """Put checked parameters in force from the next tick on."""
         values = parameters.values
         self._described = parameters
         self.vehicle = Vehicle.from_parameters(parameters)
+        self._problem = (self._problem.for_vehicle(self.vehicle) if self._problem
+                         else AllocationProblem(self.vehicle))
         self._bounds = ThrustBounds(self.vehicle)
         self._signs = frd_signs(values['message_frame'])
-        self._tick_period = 1e9 / values['rate']  # [ns]
         max_rates = np.array([thruster.max_rate for thruster in self.vehicle.thrusters])
         self._step = np.where(max_rates > 0.0, max_rates / values['rate'], np.inf)  # [N]
-        fallback = np.array([*values['fallback_velocity'], 0.0, 0.0, 0.0])
-        self._fallback_limits = self._bounds(self._signs * fallback)
-        self._wrench_timeout, self._odometry_timeout, self._current_timeout = (
-            round(values[f'{name}_timeout'] * 1e9) for name in ('wrench', 'odometry', 'current'))
+        self._fallback_velocity = self._signs * (*values['fallback_velocity'], 0.0, 0.0, 0.0)
+        self._fallback_limits = self._bounds(self._fallback_velocity)
+        self._wrench_timeout, self._velocity_timeout, self._current_timeout = (
+            round(values.get(f'{name}_timeout', 0.0) * 1e9)
+            for name in ('wrench', 'odometry', 'current'))
+        self._outputs.publish_individually(values['publish_individual'])
+        self._tick_period = _period(values['rate'])
+        if self._timer is not None and self._timer.timer_period_ns != self._tick_period:
+            self._timer.timer_period_ns = self._tick_period
+            self._last_tick = None  # the tick that comes cannot be late
+            if self._timer.time_until_next_call() > self._tick_period:
+                self._timer.reset()
 
     # Inputs
 
     def _on_wrench(self, message: Wrench) -> None:
         self._inputs.accept_wrench(wrench_components(message), self._now())
 
+    def _on_stamped_wrench(self, message: WrenchStamped) -> None:
+        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+        old = self.get_clock().now().nanoseconds - stamp if stamp else 0
+        self._inputs.accept_wrench(wrench_components(message.wrench), self._now(), old)
+
     def _on_odometry(self, message: Odometry) -> None:
-        self._inputs.accept_odometry(
-            twist_components(message.twist.twist),
-            quaternion_components(message.pose.pose.orientation),
-            message.header.frame_id, self._now())
+        self._inputs.accept_velocity(
+            twist_components(message.twist.twist), self._now(), 'odom', message.header.frame_id,
+            quaternion_components(message.pose.pose.orientation))
+
+    def _on_twist(self, message: Twist) -> None:
+        self._inputs.accept_velocity(twist_components(message), self._now(), 'twist')
 
     def _on_current(self, message: Vector3Stamped) -> None:
         self._inputs.accept_current(
@@ -210,17 +210,19 @@ class ThrustAllocator(Node):
 
     def _limits(self, now: int) -> np.ndarray:
         """Return the limits at the present velocity, and note what is wrong with it."""
-        odometry, timeout = self._inputs.odometry, self._odometry_timeout
-        velocity, ignored = self._inputs.velocity_through_water(now, self._current_timeout)
+        received, timeout = self._inputs.velocity, self._velocity_timeout
+        through_water, ignored = self._inputs.velocity_through_water(now, self._current_timeout)
         self._findings.note('current', f'current ignored: {ignored}' if ignored else '')
-        if odometry is None:
+        if received is None:
             self._findings.note(
                 'odometry', 'no odometry yet: using fallback_velocity' if timeout else '')
+            self._velocity = self._fallback_velocity
             return self._fallback_limits.copy()
-        limits = self._bounds(self._signs * velocity)
-        stale = now - odometry.time > timeout
-        since = ('since the clock went back' if odometry.time == NEVER
-                 else f'for {_age(odometry, now)} s')
+        self._velocity = self._signs * through_water
+        limits = self._bounds(self._velocity)
+        stale = received.age(now) > timeout
+        since = ('since the clock went back' if received.time == NEVER
+                 else f'for {_age(received, now)} s')
         self._findings.note(
             'odometry', f'no odometry {since}: using fallback_velocity where it is tighter'
             if stale and timeout else '')
@@ -232,7 +234,7 @@ class ThrustAllocator(Node):
     def _live_wrench(self, now: int) -> np.ndarray | None:
         """Return the command in frd axes, or None if none counts, and note a stop."""
         received = self._inputs.wrench
-        live = received is not None and now - received.time <= self._wrench_timeout
+        live = received is not None and received.age(now) <= self._wrench_timeout
         self._findings.note('wrench', '' if live else 'no wrench: zero setpoints')
         self._findings.note('enable', '' if self._enabled else 'disabled: zero setpoints')
         return self._signs * received.values if live else None
@@ -253,15 +255,10 @@ class ThrustAllocator(Node):
     def _publish(self, limits: np.ndarray, thrusts: np.ndarray, achieved: np.ndarray,
                  unallocated: np.ndarray) -> None:
         """Publish one tick; wrenches are in frd axes."""
-        self._setpoints = thrusts
-        self._limits_message.data = float64s(limits)
-        self._setpoints_message.data = float64s(thrusts)
-        fill_wrench(self._achieved_message, self._signs * achieved)
-        fill_wrench(self._unallocated_message, self._signs * unallocated)
-        self._limits_publisher.publish(self._limits_message)
-        self._setpoints_publisher.publish(self._setpoints_message)
-        self._achieved_publisher.publish(self._achieved_message)
-        self._unallocated_publisher.publish(self._unallocated_message)
+        self._limits_now, self._setpoints = limits, thrusts
+        self._outputs.publish(
+            limits, thrusts, self._signs * achieved, self._signs * unallocated,
+            self.vehicle.thrusters, lambda: self._bounds.flow(self._velocity))
 
     def stop(self) -> None:
         """Publish zero setpoints for the last time and wait until they have been delivered."""
@@ -270,9 +267,8 @@ class ThrustAllocator(Node):
         try:
             self._publish(self._limits(self._now()), zeros, np.zeros(6), np.zeros(6))
         except Exception:  # what has ended the node may lie in there: zeros all the same
-            self._setpoints_message.data = float64s(zeros)
-            self._setpoints_publisher.publish(self._setpoints_message)
-        self._setpoints_publisher.wait_for_all_acked(ACKNOWLEDGE)
+            self._outputs.publish_zero_setpoints()
+        self._outputs.wait_until_delivered()
         time.sleep(LINGER)
 
     # Reports
@@ -302,12 +298,26 @@ class ThrustAllocator(Node):
             header=Header(stamp=self.get_clock().now().to_msg()),
             status=[status_message(f'{self.get_name()}: allocation', level, text, {
                 'age of wrench [s]': _age(inputs.wrench, now),
-                'age of odometry [s]': _age(inputs.odometry, now),
+                'age of odometry [s]': _age(inputs.velocity, now),
                 **allocation_figures(allocation, vehicle), **period.figures(),
                 **{f'dropped: {cause}': str(n) for cause, n in sorted(inputs.dropped.items())},
             })]))
 
+    def _draw(self) -> None:
+        """Publish a picture of the last tick, if anybody looks."""
+        if self._marker_publisher.get_subscription_count():
+            self._marker_publisher.publish(thruster_markers(
+                self.vehicle.thrusters, self._setpoints, self._limits_now, self._signs[:3],
+                self._described.values['marker_frame'], self.get_clock().now().to_msg()))
+
+
+def _period(rate: float) -> int:
+    """Return the period of a rate [Hz] in ns."""
+    if 1e9 / rate >= 2.0**63:
+        raise ParameterError.wrong('rate', rate, 'large enough for its period to fit a clock')
+    return round(1e9 / rate)
+
 
 def _age(received: Received | None, now: int) -> str:
     return 'none' if received is None or received.time == NEVER else (
-        f'{(now - received.time) * 1e-9:.1f}')
+        f'{received.age(now) * 1e-9:.1f}')

@@ -12,6 +12,12 @@ import yaml
 NODE_NAME = 'thrust_allocator'
 
 
+def is_of_every_node(name: str) -> bool:
+    """Tell a parameter that ROS 2 itself gives every node, as `ros2 param dump` writes it too."""
+    return (name in ('use_sim_time', 'start_type_description_service')
+            or name.startswith('qos_overrides.'))
+
+
 class _Loader(yaml.SafeLoader):
     """A safe loader that refuses what ROS 2 does, and a key given twice, which PyYAML drops."""
 
@@ -51,7 +57,8 @@ def read_parameter_file(path: str | Path, node: str = f'/{NODE_NAME}') -> dict[s
     sections = check_parameter_file(path)
     for pattern, section in sections:
         if _matches(pattern, node):
-            values.update(section)
+            values.update((name, value) for name, value in section.items()
+                          if not is_of_every_node(name))
     if not values:
         keys = ', '.join(pattern for pattern, _ in sections) or 'none'
         raise ParameterError(f'{path}: has nothing for the node {node}; its top keys are {keys}, '

@@ -53,7 +53,7 @@ class Real:
     def read(self, name: str, value: object) -> float:
         """Return `value` as a float; raise ParameterError unless it is one and in range."""
         try:
-            number = _real(value)
+            number = as_real(value)
         except (ValueError, OverflowError):
             raise ParameterError.wrong(name, value, self) from None
         inside = self.low <= number <= self.high
@@ -70,7 +70,8 @@ def is_exponent(value: object) -> bool:
         r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+', value))
 
 
-def _real(value: object) -> float:
+def as_real(value: object) -> float:
+    """Return a number as a float, whole or as a word such as 1.0e4; else raise an error."""
     if isinstance(value, bool) or not (isinstance(value, (int, float)) or is_exponent(value)):
         raise ValueError
     return float(value)
@@ -125,12 +126,11 @@ class Direction(Reals):
     besides: str = ', not all 0'
 
     def read(self, name: str, value: object) -> tuple[float, ...]:
-        """Return the unit vector; raise ParameterError for a vector without a direction."""
+        """Return the vector as it is; raise ParameterError for one without a direction."""
         vector = super().read(name, value)
-        length = math.hypot(*vector)
-        if length < 1e-9:
+        if math.hypot(*vector) < 1e-9:
             raise ParameterError.wrong(name, list(value), self)
-        return tuple(component / length for component in vector)
+        return vector
 
 
 @dataclass(frozen=True)
@@ -159,6 +159,20 @@ class Choice:
     def read(self, name: str, value: object) -> str:
         """Return `value`; raise ParameterError unless it is one of the words."""
         if value not in self.words:
+            raise ParameterError.wrong(name, value, self)
+        return value
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word that is not empty."""
+
+    def __str__(self) -> str:
+        return 'a word'
+
+    def read(self, name: str, value: object) -> str:
+        """Return `value`; raise ParameterError unless it is a word."""
+        if not isinstance(value, str) or not value or value.split() != [value]:
             raise ParameterError.wrong(name, value, self)
         return value
 

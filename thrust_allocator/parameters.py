@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 from thrust_allocator.frames import DOFS, FRAMES
 from thrust_allocator.parameter_types import (
-    BollardThrust, Choice, Direction, Flag, LARGEST, Names, ParameterError, Real, Reals)
+    BollardThrust, Choice, Direction, Flag, LARGEST, Names, ParameterError, Real, Reals,
+    Word)
 
 REQUIRED = object()  # stands where a default would
 
@@ -26,6 +27,7 @@ class Parameter(NamedTuple):
     default: Any
     unit: str
     meaning: str
+    live: bool = True  # whether it can be changed while the node runs
 
 
 def _pair(item: Real) -> Reals:
@@ -35,16 +37,29 @@ def _pair(item: Real) -> Reals:
 NODE = (
     Parameter('rate', Real(0.0, 1000.0, above=True), 50.0, 'Hz', 'ticks per second'),
     Parameter('water_density', _POSITIVE, 1025.0, 'kg/m^3', 'density of the water'),
-    Parameter('vehicle_frame', Choice(FRAMES), 'frd', '', 'axes of positions and directions'),
-    Parameter('message_frame', Choice(FRAMES), 'flu', '', 'axes of all wrenches and the twist'),
+    Parameter('vehicle_frame', Choice(FRAMES), 'frd', '', 'axes of positions and directions',
+              live=False),
+    Parameter('message_frame', Choice(FRAMES), 'flu', '', 'axes of all wrenches and the twist',
+              live=False),
     Parameter('start_enabled', Flag(), True, '',
-              'whether the node allocates before ~/enable is called'),
+              'whether the node allocates before ~/enable is called', live=False),
     Parameter('wrench_timeout', _POSITIVE, 0.5, 's', 'age at which a wrench counts no more'),
     Parameter('odometry_timeout', _NOT_NEGATIVE, 0.5, 's',
               'age at which a velocity counts no more; 0: no odometry is expected'),
     Parameter('current_timeout', _POSITIVE, 10.0, 's', 'age at which a current counts no more'),
     Parameter('fallback_velocity', Reals((_ANY,) * 3, '[x, y, z]'), (0.0, 0.0, 0.0), 'm/s',
               'velocity through the water while no odometry comes, in message_frame axes'),
+    Parameter('stamped_wrench', Flag(), False, '', 'whether cmd_wrench is a WrenchStamped',
+              live=False),
+    Parameter('velocity_type', Choice(('odometry', 'twist', 'twist_with_covariance')), 'odometry',
+              '', 'Odometry on odom, or TwistStamped or TwistWithCovarianceStamped on twist',
+              live=False),
+    Parameter('setpoint_unit', Choice(('newton', 'bollard_newton', 'bollard_fraction')), 'newton',
+              '', 'of thruster_setpoints: thrust in the flow, or what gives it at rest',
+              live=False),
+    Parameter('publish_individual', Flag(), False, '',
+              'whether each thrust in the flow, in N, goes out on thrusters/<name>/thrust too'),
+    Parameter('marker_frame', Word(), 'base_link', '', 'frame id of thruster_markers'),
 ) + tuple(
     Parameter(f'wrench_weights.{dof}', Real(1e-3, 1e7, or_zero=True), 10000.0, '',
               f'R of {dof}: cost of its error squared; 0: not controlled')
@@ -53,8 +68,9 @@ NODE = (
 
 THRUSTER = (
     Parameter('position', Reals((_ANY,) * 3, '[x, y, z]'), REQUIRED, 'm',
-              'from the body origin, in vehicle_frame axes'),
-    Parameter('direction', Direction(), REQUIRED, '', 'of positive thrust on the vehicle'),
+              'from the body origin, in vehicle_frame axes', live=False),
+    Parameter('direction', Direction(), REQUIRED, '', 'of positive thrust on the vehicle',
+              live=False),
     Parameter('bollard_thrust', BollardThrust(), REQUIRED, 'N',
               'greatest thrust at rest [reverse, forward]'),
     Parameter('enabled', Flag(), True, '',
@@ -64,7 +80,8 @@ THRUSTER = (
               'greatest change of thrust; 0: unlimited'),
     Parameter('cutoff', Real(0.0, 1.0, below=True), 0.0, '',
               'share of Bollard thrust below which a limit is not worth using'),
-    Parameter('torque_ratio', _ANY, 0.0, 'm', 'k: reaction torque about direction per N'),
+    Parameter('torque_ratio', _ANY, 0.0, 'm', 'k: reaction torque about direction per N',
+              live=False),
 )
 
 _PROPELLER = (
@@ -97,14 +114,17 @@ MODELS = {
                Parameter('decay', _NOT_NEGATIVE, REQUIRED, '', 'c: decay of thrust with speed')),
     'constant': (),
 }
-_MODEL = Parameter('model', Choice(tuple(MODELS)), REQUIRED, '', 'how speed changes the limits')
-_THRUSTER_NAMES = Parameter('thruster_names', Names(), REQUIRED, '', 'the order of every array')
+_MODEL = Parameter('model', Choice(tuple(MODELS)), REQUIRED, '', 'how speed changes the limits',
+                   live=False)
+_THRUSTER_NAMES = Parameter('thruster_names', Names(), REQUIRED, '', 'the order of every array',
+                            live=False)
 
 
 @dataclass(frozen=True)
 class Parameters:
     """A vehicle's parameters, checked: no missing, unknown or impossible value among them."""
 
+    given: Mapping[str, Any]  # as it was given
     values: Mapping[str, Any]  # by full name, e.g. 'thrusters.up.weight'; defaults filled in
     definitions: Mapping[str, Parameter]  # of the same names
     warnings: tuple[str, ...]
@@ -127,6 +147,11 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
     thrusters = _read(given, 'thruster_names', _THRUSTER_NAMES)
     definitions = {'thruster_names': _THRUSTER_NAMES}
     definitions.update((parameter.name, parameter) for parameter in NODE)
+    if _read(given, 'velocity_type', definitions['velocity_type']) != 'odometry':
+        if 'current_timeout' in given:
+            raise ParameterError('current_timeout: is given, must be left out where velocity_type '
+                                 'is not odometry: no orientation, no current')
+        del definitions['current_timeout']
     _check_thruster_names(given, thrusters)
     for thruster in thrusters:
         prefix = f'thrusters.{thruster}.'
@@ -142,8 +167,8 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
         warnings.append(f'{mistake}; it is ignored')
     values = {name: _read(given, name, parameter) for name, parameter in definitions.items()}
     _check_together(values, thrusters)
-    return Parameters(MappingProxyType(values), MappingProxyType(definitions),
-                      tuple(sorted(warnings)))
+    return Parameters(MappingProxyType(dict(given)), MappingProxyType(values),
+                      MappingProxyType(definitions), tuple(sorted(warnings)))
 
 
 def _read(given: Mapping[str, Any], name: str, parameter: Parameter) -> Any:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import math
 import os
 from pathlib import Path
+import signal
 import subprocess
 import sys
 import time
@@ -15,10 +16,12 @@ from geometry_msgs.msg import Wrench
 from nav_msgs.msg import Odometry
 import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64MultiArray
-from thrust_allocator.node import INPUT, OUTPUT
+from thrust_allocator.node import INPUT
+from thrust_allocator.outputs import OUTPUT
 from thrust_allocator.parameter_file import NODE_NAME
 
 MINUTE = 60.0  # [s]
@@ -107,15 +110,13 @@ def main(args: Sequence[str] | None = None) -> int:
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
     ros = ['--ros-args', '-r', f'__ns:=/soak_{uuid.uuid4().hex}', '-r', '/diagnostics:=diagnostics']
-    rclpy.init(args=['soak', *ros])
+    interrupts: list[int] = []  # a flag, so that no moment is bad for leaving no node behind
+    signal.signal(signal.SIGINT, lambda number, _: interrupts.append(number))
+    rclpy.init(args=['soak', *ros], signal_handler_options=SignalHandlerOptions.NO)
     child = subprocess.Popen([sys.executable, '-m', NODE_NAME, *ros, '--log-level', 'error',
                               '-p', f'rate:={options.rate}'])
     try:
-        complaints = _run(Soak(options.rate), child, options.minutes)
-    except (KeyboardInterrupt, ExternalShutdownException, RuntimeError):  # or what rcl says then
-        if rclpy.ok():
-            raise
-        complaints = ['it was interrupted']
+        complaints = _run(Soak(options.rate), child, options.minutes, interrupts)
     finally:
         child.terminate()
         try:
@@ -129,13 +130,16 @@ def main(args: Sequence[str] | None = None) -> int:
     return 1 if complaints else 0
 
 
-def _run(soak: Soak, child: subprocess.Popen, minutes: float) -> list[str]:
+def _run(soak: Soak, child: subprocess.Popen, minutes: float,
+         interrupts: list[int]) -> list[str]:
     """Drive the node, report every minute and at the end, and return what was wrong."""
     executor = SingleThreadedExecutor()
     executor.add_node(soak)
     begun = time.monotonic()
     while not (soak.setpoints and soak.ticks):
         executor.spin_once(timeout_sec=0.1)
+        if interrupts:
+            return ['it was interrupted']
         if child.poll() is not None or time.monotonic() > begun + PATIENCE:
             return ['the node was not heard']
     begun = time.monotonic()
@@ -144,6 +148,8 @@ def _run(soak: Soak, child: subprocess.Popen, minutes: float) -> list[str]:
     for end in [*(minute * MINUTE for minute in range(1, math.ceil(minutes))), minutes * MINUTE]:
         while time.monotonic() < begun + end:
             executor.spin_once(timeout_sec=0.1)
+            if interrupts:
+                return ['it was interrupted']
             if child.poll() is not None:
                 return ['the node ended by itself']
         memory = _memory(child.pid)

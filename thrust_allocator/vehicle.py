@@ -92,10 +92,11 @@ _LOSSES = {'propeller': PropellerLoss.from_parameters,
 def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
     """Build a thruster from its own parameters and those of the node."""
     signs = frd_signs(values['vehicle_frame'])[:3]
-    position, direction = (tuple((signs * values[key]).tolist())
-                           for key in ('position', 'direction'))
-    return Thruster(name, position, direction, values['bollard_thrust'], values['weight'],
-                    values['torque_ratio'], _LOSSES[values['model']](name, values),
+    direction = np.array(values['direction'])
+    direction = signs * direction / np.linalg.norm(direction)
+    return Thruster(name, tuple((signs * values['position']).tolist()), tuple(direction.tolist()),
+                    values['bollard_thrust'], values['weight'], values['torque_ratio'],
+                    _LOSSES[values['model']](name, values),
                     values['max_rate'], values['cutoff'], values['enabled'])
 
 

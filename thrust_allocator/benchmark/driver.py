@@ -14,7 +14,8 @@ from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
 from thrust_allocator.benchmark.ticks import mt2012, smooth_walk
 from thrust_allocator.frames import frd_signs
-from thrust_allocator.node import INPUT, OUTPUT
+from thrust_allocator.node import INPUT
+from thrust_allocator.outputs import OUTPUT
 
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into a period
 PATIENCE = 20.0  # longest wait for the first answer [s]

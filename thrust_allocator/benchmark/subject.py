@@ -13,12 +13,15 @@ from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
 from thrust_allocator import __main__ as process
 from thrust_allocator.messages import array_message
-from thrust_allocator.node import INPUT, OUTPUT, ThrustAllocator
+from thrust_allocator.node import INPUT, ThrustAllocator
+from thrust_allocator.outputs import OUTPUT
 from thrust_allocator.parameter_file import NODE_NAME
+from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012
 EXECUTORS = {'SingleThreadedExecutor': SingleThreadedExecutor, 'EventsExecutor': EventsExecutor}
@@ -42,6 +45,8 @@ class Relay(Node):
                 (Float64MultiArray, 'thrust_limits'), (Float64MultiArray, 'thruster_setpoints'),
                 (Wrench, 'achieved_wrench'), (Wrench, 'unallocated_wrench'))]
         publisher = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        states = self.create_publisher(JointState, 'thruster_states', OUTPUT)
+        markers = self.create_publisher(MarkerArray, 'thruster_markers', 1)
         self.create_subscription(Wrench, 'cmd_wrench', self._on_wrench, INPUT)
         self.create_subscription(Odometry, 'odom', self._on_odometry, INPUT)
         self.create_subscription(Vector3Stamped, 'current', lambda message: None, INPUT)
@@ -49,6 +54,9 @@ class Relay(Node):
         self.create_guard_condition(lambda: None)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0, lambda: publisher.publish(self._diagnostics), clock=steady)
+        self.create_timer(
+            0.2, lambda: (states.get_subscription_count(), markers.get_subscription_count()),
+            clock=steady)
         self._timer = self.create_timer(
             1.0 / self.get_parameter('rate').value, self._tick, clock=steady)
 

@@ -1,0 +1,134 @@
+"""Who follows the tutorial gets the vehicle on its drawing, and what the tutorial shows."""
+
+import math
+from pathlib import Path
+import re
+
+import numpy as np
+from numpy.testing import assert_allclose
+import pytest
+from rclpy.parameter import Parameter
+from thrust_allocator.parameter_file import read_parameter_file
+from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.parameters import read_parameters
+from thrust_allocator.vehicle import Vehicle
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+TUTORIAL = (ROOT / 'doc/tutorial.md').read_text('utf-8')
+TURN = math.sqrt(0.5)
+DRAWING = {  # position and direction of positive thrust: x forward, y starboard, z down
+    'front_right': ((0.156, 0.111, 0.085), (-TURN, TURN, 0.0)),
+    'front_left': ((0.156, -0.111, 0.085), (-TURN, -TURN, 0.0)),
+    'rear_right': ((-0.156, 0.111, 0.085), (TURN, TURN, 0.0)),
+    'rear_left': ((-0.156, -0.111, 0.085), (TURN, -TURN, 0.0)),
+    'vertical_front_right': ((0.120, 0.218, 0.0), (0.0, 0.0, 1.0)),
+    'vertical_front_left': ((0.120, -0.218, 0.0), (0.0, 0.0, 1.0)),
+    'vertical_rear_right': ((-0.120, 0.218, 0.0), (0.0, 0.0, 1.0)),
+    'vertical_rear_left': ((-0.120, -0.218, 0.0), (0.0, 0.0, 1.0))}
+
+
+@pytest.fixture
+def my_vehicle(tmp_path):
+    """Return the path of the tutorial's YAML, as a reader would have saved it."""
+    text, = re.findall(r'^```yaml\n(.*?)^```$', TUTORIAL, re.M | re.S)
+    path = tmp_path / 'my_vehicle.yaml'
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+def shown(after):
+    """Return the text block that the tutorial shows next after some words."""
+    return re.search(r'^```text\n(.*?)\n```$', TUTORIAL[TUTORIAL.index(after):], re.M | re.S)[1]
+
+
+def wrenches():
+    """Return what the tutorial sends on cmd_wrench and shows of it: (text, (6,), (p,)) of each."""
+    pattern = r'"(\{.*?\})"\n(?:ros2 topic echo.*\n)?```\n\n```text\n(\[.*\])\n```'
+    found = []
+    for sent, heard in re.findall(r'cmd_wrench geometry_msgs/msg/Wrench ' + pattern, TUTORIAL):
+        wrench = yaml.safe_load(sent)
+        found.append((sent, np.array([wrench.get(group, {}).get(axis, 0.0) for group in
+                                      ('force', 'torque') for axis in 'xyz']),
+                      yaml.safe_load(heard)))
+    return found
+
+
+def test_the_described_vehicle(start, my_vehicle):
+    """The node that runs the tutorial's file has the drawing's thrusters, and starts disabled."""
+    node, peer = start(file=my_vehicle)
+    assert [one.name for one in node.vehicle.thrusters] == list(DRAWING)
+    for one in node.vehicle.thrusters:
+        position, direction = DRAWING[one.name]
+        assert_allclose(one.position, position, atol=1e-12)
+        assert_allclose(one.direction, direction, atol=1e-5)
+        assert one.bollard_thrust == (-39.9, 51.4)
+        assert_allclose(one.loss.speed_loss, [12.1, 15.6], atol=0.05)  # as by the tow test
+    assert_allclose(np.array([4.069, 5.245]) * 9.807, [39.9, 51.4], atol=0.05)
+    assert node.vehicle.warnings() == []
+    assert not peer.settle([40.0, 0.0, 0.0, 0.0, 0.0, 0.0])['thruster_setpoints'].any()
+    assert 'disabled: zero setpoints' in node._findings.overall()[1]
+
+
+def test_the_package_has_the_same_vehicle(my_vehicle):
+    """Drawn or taken from config/bluerov2_heavy.yaml: thrusters and weights are equal."""
+    one, other = (Vehicle.from_parameters(read_parameters(read_parameter_file(path)))
+                  for path in (my_vehicle, ROOT / 'config/bluerov2_heavy.yaml'))
+    assert one == other
+
+
+def test_the_setpoints_shown(start, my_vehicle):
+    """Each wrench that the tutorial sends gives the setpoints that it shows."""
+    _, peer = start('start_enabled:=true', file=my_vehicle)
+    cases = wrenches()
+    assert len(cases) == 5
+    for sent, wrench, expected in cases:
+        twist = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0] if '200' in sent else None
+        assert_allclose(peer.settle(wrench, twist)['thruster_setpoints'], expected, atol=0.0051)
+
+
+def test_the_weights_shown(start, my_vehicle):
+    """The step on weights: what is achieved before and after, and what the diagnostics say."""
+    node, peer = start('start_enabled:=true', file=my_vehicle)
+    command, forward = [200.0, 0.0, 0.0, 0.0, 0.0, 20.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    before = peer.settle(command, forward)
+    assert_allclose(before['achieved_wrench'][[0, 5]], [120.6, 0.0], atol=0.06)
+    assert_allclose(before['thrust_limits'][[0, 10]], [-37.27, 48.01], atol=0.005)
+    node._report()
+    assert node._findings.overall()[1] == shown('## 8. Read the diagnostics')
+    assert node.set_parameters([Parameter('wrench_weights.yaw', value='1.0e6')])[0].successful
+    after = peer.settle(command, forward)
+    assert_allclose(after['thruster_setpoints'],
+                    yaml.safe_load(shown('wrench_weights.yaw 1.0e6')), atol=0.0051)
+    assert_allclose(after['achieved_wrench'][[0, 5]], [64.7, 14.9], atol=0.06)
+
+
+def test_the_refusals_shown(start, my_vehicle):
+    """What the tutorial sets in vain is refused with the words that it shows."""
+    node, _ = start(file=my_vehicle)
+    results = node.set_parameters([
+        Parameter('wrench_weights.yaw', value='1.0e8'),
+        Parameter('thrusters.front_left.position', value=[0.0, 0.0, 0.0])])
+    assert [f'Setting parameter failed: {result.reason}' for result in results] == (
+        shown('## 9. Keep').splitlines())
+
+
+def test_the_mistake_shown(my_vehicle):
+    """The mistake of step 5 ends in the line that it shows."""
+    text = my_vehicle.read_text('utf-8')
+    head, _, tail = text.rpartition('      rear_left:')
+    broken = head + '      rear_left:' + tail.replace('[-39.9', '[39.9', 1)
+    my_vehicle.write_text(broken, encoding='utf-8')
+    with pytest.raises(ParameterError) as caught:
+        read_parameters(read_parameter_file(my_vehicle))
+    assert shown('If there is a mistake') == f'thrust_allocator: {caught.value}'
+
+
+def test_the_log_shown(start, my_vehicle):
+    """At start the node says what the tutorial shows, in that order, without an odometry."""
+    node, peer = start(file=my_vehicle)
+    said = []
+    node._findings._logger = type('Logger', (), {'warning': said.append, 'info': said.append})
+    peer.settle()
+    assert [f'[WARN] [thrust_allocator]: {line}' for line in said] == shown(
+        'Start it:').splitlines()

@@ -1,0 +1,125 @@
+"""The topics that carry each tick's result, in the units and under the names that users want."""
+
+from array import array
+from collections.abc import Callable, Sequence
+import time
+
+from geometry_msgs.msg import Wrench
+import numpy as np
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64, Float64MultiArray
+from thrust_allocator.bollard_equivalent import bollard_equivalent
+from thrust_allocator.messages import array_message, fill_wrench
+from thrust_allocator.vehicle import Thruster
+
+OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+ACKNOWLEDGE = 0.2  # the longest wait for the last setpoints to be acknowledged [s]
+
+Flow = Sequence[tuple[float, float]]  # of each thruster, along and across its thrust axis [m/s]
+
+
+class Outputs:
+    """Publishers of limits, setpoints and wrenches, which send one tick at a time."""
+
+    def __init__(self, node: Node, names: Sequence[str], setpoint_unit: str) -> None:
+        """
+        Create the publishers.
+
+        :param names: of the p thrusters.
+        :param setpoint_unit: of `thruster_setpoints`, a key of SETPOINTS.
+        """
+        p = len(names)
+        self._node = node
+        self._in_unit = SETPOINTS[setpoint_unit]
+        self._limits = array_message([('limits', 2), ('thrusters', p)])
+        self._setpoints = array_message([('thrusters', p)])
+        self._achieved, self._unallocated = Wrench(), Wrench()
+        self._states = JointState(name=list(names))
+        create = node.create_publisher
+        self._limits_publisher = create(Float64MultiArray, 'thrust_limits', OUTPUT)
+        self._setpoints_publisher = create(Float64MultiArray, 'thruster_setpoints', OUTPUT)
+        self._achieved_publisher = create(Wrench, 'achieved_wrench', OUTPUT)
+        self._unallocated_publisher = create(Wrench, 'unallocated_wrench', OUTPUT)
+        self._states_publisher = create(JointState, 'thruster_states', OUTPUT)
+        self._individual: list[Publisher] = []
+        self._individually = False
+
+    def publish_individually(self, on: bool) -> None:
+        """Have each thrust on a topic `thrusters/<name>/thrust` too, or end with zeros there."""
+        if on and not self._individual:
+            self._individual = [
+                self._node.create_publisher(Float64, f'thrusters/{name}/thrust', OUTPUT)
+                for name in self._states.name]
+        elif self._individually and not on:
+            for publisher in self._individual:
+                publisher.publish(Float64())
+        self._individually = on
+
+    def publish(self, limits: np.ndarray, thrusts: np.ndarray, achieved: np.ndarray,
+                unallocated: np.ndarray, thrusters: Sequence[Thruster],
+                flow: Callable[[], Flow]) -> None:
+        """
+        Publish one tick.
+
+        :param limits: (2, p), row 0 lower, row 1 upper [N].
+        :param thrusts: (p,) in the flow [N].
+        :param achieved: (6,) in the axes of the messages [N, N*m].
+        :param unallocated: (6,) in the axes of the messages [N, N*m].
+        :param flow: gives the motion of the thrusters through the water, where it is needed.
+        """
+        wanted = thrusts.tolist()
+        self._limits.data = array('d', limits.tobytes())
+        self._setpoints.data = array('d', self._in_unit(wanted, thrusters, flow))
+        fill_wrench(self._achieved, achieved)
+        fill_wrench(self._unallocated, unallocated)
+        self._limits_publisher.publish(self._limits)
+        self._setpoints_publisher.publish(self._setpoints)
+        self._achieved_publisher.publish(self._achieved)
+        self._unallocated_publisher.publish(self._unallocated)
+        if self._individually:
+            for publisher, thrust in zip(self._individual, wanted):
+                publisher.publish(Float64(data=thrust))
+        if self._states_publisher.get_subscription_count():
+            self._states.header.stamp = self._node.get_clock().now().to_msg()
+            self._states.effort = array('d', wanted)
+            self._states_publisher.publish(self._states)
+
+    def publish_zero_setpoints(self) -> None:
+        """Publish zeros and nothing else, when the rest of the node has failed."""
+        self._setpoints.data = array('d', [0.0] * len(self._states.name))
+        self._setpoints_publisher.publish(self._setpoints)
+        for publisher in self._individual:
+            publisher.publish(Float64())
+
+    def wait_until_delivered(self) -> None:
+        """Wait, though not for long, until reliable subscribers have the last setpoints."""
+        deadline = time.monotonic() + ACKNOWLEDGE
+        for publisher in (self._setpoints_publisher, *self._individual):
+            publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
+
+
+def _newton(thrusts: list[float], thrusters: Sequence[Thruster],
+            flow: Callable[[], Flow]) -> list[float]:
+    return thrusts
+
+
+def _bollard_newton(thrusts: list[float], thrusters: Sequence[Thruster],
+                    flow: Callable[[], Flow]) -> list[float]:
+    return [bollard_equivalent(thrust, thruster.loss, thruster.bollard_thrust, *motion)
+            for thrust, thruster, motion in zip(thrusts, thrusters, flow())]
+
+
+def _bollard_fraction(thrusts: list[float], thrusters: Sequence[Thruster],
+                      flow: Callable[[], Flow]) -> list[float]:
+    return [equivalent / abs(thruster.bollard_thrust[equivalent > 0.0]) if equivalent else 0.0
+            for equivalent, thruster in zip(_bollard_newton(thrusts, thrusters, flow), thrusters)]
+
+
+# What a setpoint may stand for: the thrust wanted in the flow [N], or what a driver calibrated at
+# rest must be told to deliver it, in newtons or as a share of Bollard thrust
+SETPOINTS = {'newton': _newton, 'bollard_newton': _bollard_newton,
+             'bollard_fraction': _bollard_fraction}

@@ -1,0 +1,92 @@
+"""A vehicle's parameters as parameters of a ROS 2 node: taken, declared, and changed."""
+
+from array import array
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rclpy.exceptions import ParameterNotDeclaredException
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
+from thrust_allocator.parameter_file import is_of_every_node
+from thrust_allocator.parameter_types import as_real, Flag, ParameterError, Real, Reals
+from thrust_allocator.parameters import Parameter, Parameters, read_parameters
+
+
+def take_overrides(node: Node) -> Parameters:
+    """
+    Check what the command line and parameter files say for a node that has declared all of it.
+
+    The vehicle's parameters are undeclared again, so that they can be declared as they should be.
+
+    :raises ParameterError: if it describes no vehicle.
+    """
+    given = {name: one.value for name, one in node.get_parameters_by_prefix('').items()}
+    Flag().read('use_sim_time', given['use_sim_time'])
+    own = {name: plain(value) for name, value in given.items() if not is_of_every_node(name)}
+    for name in own:
+        node.undeclare_parameter(name)
+    if 'thruster_names' not in own:
+        raise ParameterError(
+            'thruster_names: is missing, must be a list of names; does the top key of the '
+            f"parameter file match the node's name, {node.get_fully_qualified_name()}?")
+    return read_parameters(own)
+
+
+def declare(node: Node, parameters: Parameters) -> None:
+    """Declare every parameter with its value in effect, described so that one can tune by it."""
+    for name, value in parameters.values.items():
+        node.declare_parameter(
+            name, value, descriptor(parameters.definitions[name]), ignore_override=True)
+
+
+def descriptor(definition: Parameter) -> ParameterDescriptor:
+    """Return the ROS description of a parameter: meaning, unit, range, whether it is live."""
+    unit = f' [{definition.unit}]' if definition.unit else ''
+    ranges = []
+    if isinstance(definition.type, Real):
+        low = 0.0 if definition.type.or_zero else definition.type.low
+        ranges = [FloatingPointRange(from_value=low, to_value=definition.type.high)]
+    return ParameterDescriptor(
+        description=definition.meaning + unit, additional_constraints=str(definition.type),
+        read_only=not definition.live, floating_point_range=ranges)
+
+
+def coerced(changes: list[RosParameter], parameters: Parameters) -> list[RosParameter]:
+    """
+    Return changes with whole numbers, and words such as 1.0e4, made real where that is meant.
+
+    :raises ParameterNotDeclaredException: as rclpy would, which forgets the first of the names.
+    """
+    unknown = [change.name for change in changes
+               if change.name not in parameters.definitions and not is_of_every_node(change.name)]
+    if unknown:
+        raise ParameterNotDeclaredException(unknown)
+    return [_coerced(change, parameters.definitions.get(change.name)) for change in changes]
+
+
+def _coerced(change: RosParameter, definition: Parameter | None) -> RosParameter:
+    value = plain(change.value)
+    try:
+        if definition and isinstance(definition.type, Real):
+            return RosParameter(change.name, value=as_real(value))
+        if definition and isinstance(definition.type, Reals) and isinstance(value, list):
+            return RosParameter(change.name, value=[as_real(item) for item in value])
+    except ValueError:
+        pass  # the check that follows says why not
+    return change
+
+
+def changed(changes: list[RosParameter], parameters: Parameters) -> Parameters:
+    """
+    Return the parameters with some of them changed.
+
+    :raises ParameterError: if the whole would describe no vehicle.
+    """
+    return read_parameters({**parameters.values, **{
+        change.name: plain(change.value) for change in changes
+        if change.name in parameters.values}})
+
+
+def plain(value: Any) -> Any:
+    """Return the value of a ROS parameter as Python reads it from a file."""
+    return list(value) if isinstance(value, (array, tuple)) else value

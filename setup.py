@@ -17,12 +17,14 @@ setup(
         (f'share/{package_name}/config', glob('config/*.yaml')),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy', 'scipy', 'osqp>=1.1', 'PyYAML'],
+    # SciPy, whose matrices OSQP takes, and joblib come with osqp
+    install_requires=['setuptools', 'numpy', 'osqp>=1.1', 'PyYAML'],
     extras_require={
         'jazzy': jazzy,
-        'test': ['pytest', 'hypothesis', 'daqp', 'scipy', 'flake8'],
+        'test': ['pytest', 'hypothesis', 'daqp', 'matplotlib', 'dask[distributed]', 'flake8'],
         'plot': ['matplotlib'],
-        'bench': ['daqp', 'quadprog', 'casadi', 'scipy', 'matplotlib'],
+        'cluster': ['dask[distributed]'],
+        'bench': ['daqp', 'quadprog', 'casadi', 'matplotlib'],
     },
     zip_safe=True,
     maintainer='thrust_allocator maintainers',
@@ -33,6 +35,7 @@ setup(
         'console_scripts': [
             'node = thrust_allocator.__main__:main',
             'demo = thrust_allocator.demo:main',
+            'study = thrust_allocator.study.__main__:main',
         ],
     },
 )

@@ -1,0 +1,159 @@
+"""The pictures; each function draws one and writes it as PNG and SVG."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+import numpy as np
+from thrust_allocator.frames import DOFS
+from thrust_allocator.study.authority import HELD
+from thrust_allocator.study.directions import Directions
+from thrust_allocator.study.findings import named
+from thrust_allocator.study.grid import Case, Outcome
+from thrust_allocator.study.manoeuvre import unit
+from thrust_allocator.study.style import (
+    BOUNDS, finish, line, look, over_speed, panels, save)
+from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
+from thrust_allocator.vehicle import Thruster, Vehicle
+
+SPEED = 'speed through the water (m/s)'
+WORTH_SHOWN = 0.5  # a DOF is drawn if an error gets larger than this [N, N*m]
+NEAR = 1e-3  # curves closer than this share of the largest value look the same
+WORTH_LINES = (  # in the order of ALLOCATORS; the first lies under the second where they agree
+    {'color': '#E69F00', 'linestyle': '-', 'lw': 4.0, 'alpha': 0.75},
+    {'color': '#0072B2', 'linestyle': '--'}, {'color': '#000000', 'linestyle': '-'})
+
+
+def _dots(dof: int) -> str:
+    return unit(dof).replace('*', '·')
+
+
+def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep,
+                    shares: dict[str, np.ndarray], dof: int) -> None:
+    """Draw each thruster's thrust inside its moving bounds, and who gives what share of a DOF."""
+    columns = 3
+    used = len(vehicle.thrusters) + 1
+    rows = -(-used // columns)
+    moving = list(ALLOCATORS).index('moving bounds')
+    thrust = {'color': '#000000', 'linestyle': '-'}
+    styles = {name: line(i + 1) for i, name in enumerate(shares)}
+    legend = [Line2D([], [], label='thrust', **thrust),
+              Patch(color=BOUNDS, label='moving bounds')]
+    legend += [Line2D([], [], label=name, **style) for name, style in styles.items()]
+    with look():
+        figure, axes = panels(rows, columns, 2.25, 'Allocation against speed', legend,
+                              sharex=True)
+        largest = 1.1 * np.abs(vehicle.bollard_thrust).max()
+        for i, (one, thruster) in enumerate(zip(axes.ravel(), vehicle.thrusters)):
+            one.fill_between(speeds, *allocation.limits[:, :, i].T, color=BOUNDS, lw=0)
+            one.plot(speeds, allocation.thrusts[:, moving, i], **thrust)
+            over_speed(one, speeds, thruster.name, 'thrust (N)')
+            one.set_ylim(-largest, largest)
+        last = axes.ravel()[used - 1]
+        for name, share in shares.items():
+            last.plot(speeds, share, **styles[name])
+        over_speed(last, speeds, f'share of {DOFS[dof]}', 'share (%)')
+        finish(axes, used, SPEED)
+        save(figure, path)
+
+
+def draw_worth(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep) -> None:
+    """Draw delivered minus commanded wrench by allocator, for each driver and telling DOF."""
+    errors = allocation.errors
+    dofs = [dof for dof in np.flatnonzero(vehicle.wrench_weights)
+            if np.abs(errors[..., dof]).max() > WORTH_SHOWN]
+    dofs = dofs or [int(np.argmax(np.array(vehicle.wrench_weights) > 0.0))]
+    legend = [Line2D([], [], label=label, **style)
+              for label, style in zip(ALLOCATORS.values(), WORTH_LINES)]
+    with look():
+        figure, axes = panels(len(dofs), len(DRIVERS), 2.1, 'Delivered minus commanded wrench',
+                              legend, sharex=True, sharey='row')
+        for row, dof in zip(axes, dofs):
+            for d, (one, driver) in enumerate(zip(row, DRIVERS)):
+                for a, style in enumerate(WORTH_LINES):
+                    one.plot(speeds, errors[:, a, d, dof], **style)
+                over_speed(one, speeds, f'{DOFS[dof]}, driver: {driver}',
+                           f'{DOFS[dof]} ({_dots(dof)})' if d == 0 else '')
+        finish(axes, axes.size, SPEED)
+        save(figure, path)
+
+
+def draw_authority(path: Path, speeds: Sequence[float], cases: Sequence[Case],
+                   outcomes: Sequence[Outcome]) -> None:
+    """
+    Draw the range of every controlled DOF, intact and for each failure; gaps stay gaps.
+
+    A failure that changes nothing in a panel, and a thin curve that is the thick one, would only
+    hide what is below them: they are left out.
+    """
+    dofs = np.flatnonzero(cases[0].vehicle.wrench_weights)
+    kinds = {'heavier': {'lw': 2.0}, 'all': {'lw': 0.9}}
+    legend = [Line2D([], [], label=named(case.failed) + ', and what is not drawn apart' * (i == 0),
+                     **line(i)) for i, case in enumerate(cases)]
+    legend += [Line2D([], [], color='#777777', label=f'{"thin" if kind == "all" else "thick"}: '
+                      f'{HELD[kind]}', **width) for kind, width in kinds.items()]
+    columns = min(2, len(dofs))
+    with look():
+        figure, axes = panels(-(-len(dofs) // columns), columns, 2.6, 'Authority against speed',
+                              legend, sharex=True)
+        for one, dof in zip(axes.ravel(), dofs):
+            whole = outcomes[0].authority[:, :, dof]
+            near = NEAR * (np.nanmax(np.abs(whole)) if np.isfinite(whole).any() else 1.0)
+            for i, outcome in enumerate(outcomes):
+                thick, thin = found = np.moveaxis(outcome.authority[:, :, dof], 1, 0)
+                if i and np.allclose(np.moveaxis(found, 0, 1), whole, 0.0, near, equal_nan=True):
+                    continue
+                one.plot(speeds, thick, **{**line(i), **kinds['heavier']})
+                if not np.allclose(thin, thick, 0.0, near, equal_nan=True):
+                    one.plot(speeds, thin, **{**line(i), **kinds['all']})
+            over_speed(one, speeds, str(DOFS[dof]), f'{DOFS[dof]} ({_dots(dof)})')
+        finish(axes, len(dofs), SPEED)
+        save(figure, path)
+
+
+def draw_directions(path: Path, thruster: Thruster, found: Directions) -> None:
+    """Draw the limits of one thruster as contours over angle of attack and speed."""
+    with look():
+        figure, axes = panels(1, 2, 3.2, f'Bounds in every direction: {thruster.name}', [],
+                              sharey=True)
+        for one, side, name in zip(axes[0], (1, 0), ('forward', 'reverse')):
+            limits = np.abs(found.limits[..., side])
+            bollard = abs(thruster.bollard_thrust[side]) or 1.0
+            levels = MaxNLocator(12).tick_values(limits.min(), bollard)
+            shades = one.contourf(found.angles, found.speeds, limits, levels, cmap='cividis')
+            if np.ptp(limits) > 0.0:
+                middle = 0.5 * (levels[0] + levels[-1])
+                lines = one.contour(
+                    found.angles, found.speeds, limits, levels, linewidths=0.8,
+                    colors=['white' if level < middle else 'black' for level in levels])
+                for text in one.clabel(lines, fmt='%g', fontsize=9):
+                    angle, speed = text.get_position()
+                    if not (8.0 < angle < 172.0 and 0.06 < speed / found.speeds[-1] < 0.92):
+                        text.remove()  # the frame would cut it off
+            one.set(title=f'{name} limit', xlabel='angle of attack (°)',
+                    ylabel='speed of the thruster (m/s)' if side else '',
+                    xticks=range(0, 181, 30))
+            figure.colorbar(shades, ax=one, label=f'{name} thrust (N)')
+        save(figure, path)
+
+
+def draw_candidates(path: Path, speeds: Sequence[float], dofs: Sequence[int],
+                    series: dict[str, tuple[np.ndarray, np.ndarray]]) -> None:
+    """Draw the authority that every series has both ways, intact and at its worst failure."""
+    columns = min(2, len(dofs))
+    widths = ({'lw': 2.0}, {'lw': 0.9})
+    legend = [Line2D([], [], label=name, **line(i)) for i, name in enumerate(series)]
+    legend += [Line2D([], [], color='#777777', label=label, **width) for label, width in zip(
+        ('thick: intact', 'thin: worst single failure'), widths)]
+    with look():
+        figure, axes = panels(-(-len(dofs) // columns), columns, 2.6,
+                              'Authority both ways, by candidate', legend, sharex=True)
+        for one, dof in zip(axes.ravel(), dofs):
+            for i, pair in enumerate(series.values()):
+                for values, width in zip(pair, widths):
+                    one.plot(speeds, values[:, dof], **{**line(i), **width})
+            over_speed(one, speeds, DOFS[dof], f'{DOFS[dof]} ({_dots(dof)})')
+        finish(axes, len(dofs), SPEED)
+        save(figure, path)

@@ -11,7 +11,7 @@ from test_live_parameters import AHEAD, change, expected, GENTLE, TWIST, UP
 from thrust_allocator.parameters import MODELS, NODE, THRUSTER
 
 DOWN, TUNNEL = 'thrusters.down.', 'thrusters.tunnel.'
-READ_ONLY = {  # the contract's, the issue's, and rclpy's own
+READ_ONLY = {  # what shapes the node, and rclpy's own
     'thruster_names': ['down', 'left', 'up', 'right', 'tunnel'], 'vehicle_frame': 'flu',
     'message_frame': 'flu', 'start_enabled': False, UP + 'model': 'constant',
     UP + 'position': [0.0, 0.0, 0.0], UP + 'direction': [1.0, 0.0, 0.0], UP + 'torque_ratio': 0.1,
@@ -87,7 +87,7 @@ def test_what_is_read_only_says_so(bench, name, value):
 
 
 def test_nothing_else_is_read_only():
-    """The table has no read-only parameter beyond the contract's and the issue's."""
+    """The table has no read-only parameter beyond these."""
     table = (*NODE, *THRUSTER, *(one for model in MODELS.values() for one in model))
     fixed = {one.name for one in table if not one.live}
     assert fixed < {name.removeprefix(UP) for name in READ_ONLY}

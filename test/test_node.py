@@ -1,4 +1,4 @@
-"""The node and a peer of it in one process: its topics, as the contract has them."""
+"""The node and a peer of it in one process: its topics, as documented."""
 
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
@@ -34,7 +34,7 @@ def is_silent(tick):
 
 @pytest.mark.parametrize('namespace', ['', '/alpha/beta'])
 def test_topics(start, namespace):
-    """All topics of the contract are there by type, in the node's own namespace."""
+    """All documented topics are there by type, in the node's own namespace."""
     _, peer = start(remap=f'__ns:={namespace or "/"}')
     who = ('thrust_allocator', namespace or '/')
     for found, expected, absolute in (

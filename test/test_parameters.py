@@ -16,7 +16,7 @@ NAMES = 'a list of one or more different names such as tunnel or stern_2 ([a-z][
 PROPELLER = {DOWN + 'propeller.diameter': 0.2, DOWN + 'propeller.max_revolutions': 15.13,
              DOWN + 'propeller.thrust_slope': 0.34}
 
-# What the contract allows: text of the message, outermost values allowed, values next to them not
+# What is allowed: text of the message, outermost values allowed, values next to them not
 POSITIVE = '(0, 1000000]', [5e-324, 1e6], [0.0]
 ALMOST_1 = math.nextafter(1.0, 0.0)
 NOT_NEGATIVE = '[0, 1000000]', [0.0, 1e6], []
@@ -86,7 +86,7 @@ def cases(table):
 
 
 def outside():
-    """Yield every (name, value) just beyond an end of the contract's ranges, and not finite."""
+    """Yield every (name, value) just beyond an end of the ranges, and not finite."""
     for name, (_, ends, excluded) in NUMBERS.items():
         beyond = [math.nextafter(max(ends), math.inf)]
         beyond += excluded or [math.nextafter(min(ends), -math.inf)]
@@ -127,7 +127,7 @@ WRONG_SIDES = [(UP + 'direction', [0.0, 0.0, 0.0]), (UP + 'direction', [0, -0.0,
 
 @pytest.mark.parametrize('name, value', cases([*outside(), *of_wrong_type(), *WRONG_SIDES]))
 def test_a_wrong_value_is_refused(name, value):
-    """The message names the parameter, the value and what the contract allows."""
+    """The message names the parameter, the value and what is allowed."""
     assert message({name: value}) == f'{name}: is {value!r}, must be {ALLOWED[name]}'
 
 
@@ -233,8 +233,8 @@ def test_whole_numbers_and_strings_are_reals(name, one):
     assert repr(value) == repr(expected)
 
 
-def test_the_defaults_are_those_of_the_contract():
-    """What may be left out has the value that the contract prints; nothing else is read."""
+def test_the_defaults_are_those_documented():
+    """What may be left out has its documented value; nothing else is read."""
     required = {UP + 'model': 'propeller', UP + 'position': (1.0, 2.0, 3.0),
                 UP + 'direction': (0.0, 1.0, 0.0), UP + 'bollard_thrust': (-1.0, 2.0),
                 UP + 'speed_loss': (3.0, 4.0), 'thruster_names': ('up',)}

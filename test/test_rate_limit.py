@@ -1,4 +1,4 @@
-"""Rate limit and cut-off: the formulas of the contract and of physics.md 4a, and on the node."""
+"""Rate limit and cut-off: their formulas, and what they do to the node."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ steps = st.lists(st.floats(1e-6, 500.0) | st.just(np.inf), min_size=SIZE, max_si
 
 
 @given(limits, thrusts, steps)
-def test_rate_limits_are_those_of_the_contract(bounds, last, step):
+def test_rate_limits_are_those_documented(bounds, last, step):
     """The part of the limits within a step of the last setpoint; else the nearest limit."""
     lower, upper = rate_limited(bounds, last, step)
     assert (bounds[0] <= lower).all() and (lower <= upper).all() and (upper <= bounds[1]).all()

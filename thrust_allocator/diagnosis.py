@@ -95,14 +95,6 @@ class Period:
         }
 
 
-def overall(findings: dict[str, tuple[Level, str]]) -> tuple[Level, str]:
-    """Return the worst level among the findings, and all of them in one line, the worst first."""
-    if not findings:
-        return Level.OK, 'allocating'
-    worst_first = sorted(findings.values(), key=lambda finding: -finding[0])
-    return worst_first[0][0], '; '.join(text for _, text in worst_first)
-
-
 def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[str, str]:
     """Return what the newest allocation of a period came to, as text by key."""
     unallocated = np.zeros(6) if allocation is None else allocation.unallocated

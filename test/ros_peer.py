@@ -21,19 +21,6 @@ TYPES_OUT = {  # in the order of publication
     'thrust_limits': Float64MultiArray, 'thruster_setpoints': Float64MultiArray,
     'achieved_wrench': Wrench, 'unallocated_wrench': Wrench}
 
-# The paper's test, recomputed: 40 v^2 N of surge and 50 N*m of pitch, straight ahead.
-# Speed, (down, left, up, right, tunnel), limits of the stern thrusters, upper limit of the tunnel,
-# pitch and heave achieved, frd axes [m/s, N, N*m].
-ORACLE = (
-    (0.0, (-25.74, 0.00, 25.74, 0.00, -19.92), (-68.2, 120.1), 122.1, 50.00, -0.22),
-    (0.3, (-24.77, 0.97, 26.71, 0.97, -19.92), (-66.4, 112.5), 84.0, 50.00, -0.22),
-    (0.5, (-23.03, 2.71, 28.45, 2.71, -19.92), (-65.3, 107.6), 43.2, 50.00, -0.22),
-    (0.7, (-25.13, 5.30, 35.73, 5.30, -15.90), (-64.2, 102.9), 15.9, 49.94, 7.39),
-    (0.9, (-35.34, 8.77, 52.88, 8.77, -4.20), (-63.1, 98.4), 4.2, 49.77, 29.56),
-    (1.2, (-33.08, 15.59, 64.25, 15.59, -0.31), (-62.5, 92.1), 0.3, 49.71, 36.94),
-    (1.5, (-24.66, 24.35, 73.37, 24.35, -0.01), (-62.7, 86.3), 0.0, 49.71, 37.50),
-    (1.8, (-16.86, 37.97, 81.19, 37.97, 0.00), (-63.0, 81.2), 0.0, 49.71, 37.52))
-
 
 class Received(NamedTuple):
     """One message, as it came."""

@@ -7,9 +7,10 @@ import sys
 
 import numpy as np
 import pytest
-from ros_peer import ORACLE, Peer, ros_context, TYPES_IN, TYPES_OUT
+from ros_peer import Peer, ros_context, TYPES_IN, TYPES_OUT
 from thrust_allocator import demo
 from thrust_allocator.node import ThrustAllocator
+from vehicles import PAPER_TEST
 
 ROOT = Path(__file__).resolve().parent.parent
 DOMAIN = 1 + os.getpid() % 100
@@ -49,12 +50,12 @@ def test_table():
                                'pitch']
     assert units.split() == ['m/s', 'N', 'N', 'N', 'N', 'N', 'tunnel', 'N', 'N*m']
     found = np.array([row.split() for row in rows], dtype=float)
-    speeds = np.array([row[0] for row in ORACLE[1:]])
+    speeds = np.array([row[0] for row in PAPER_TEST[1:]])
     np.testing.assert_array_equal(found[:, 0], speeds)
-    np.testing.assert_allclose(found[:, 1:6], [row[1] for row in ORACLE[1:]], atol=0.02)
+    np.testing.assert_allclose(found[:, 1:6], [row[1] for row in PAPER_TEST[1:]], atol=0.02)
     tunnel = 122.1 * np.exp(-7.0 * 1025.0 * 0.0707 / 122.1 * speeds**2)  # eq. 3.12, 3.13
     np.testing.assert_allclose(found[:, 6], tunnel, atol=0.02)
-    np.testing.assert_allclose(found[:, 7], [row[4] for row in ORACLE[1:]], atol=0.02)
+    np.testing.assert_allclose(found[:, 7], [row[4] for row in PAPER_TEST[1:]], atol=0.02)
 
 
 def test_arguments_are_refused():

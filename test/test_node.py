@@ -4,7 +4,8 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from rclpy.qos import ReliabilityPolicy
-from ros_peer import cruise, ORACLE, SimulatedClock
+from ros_peer import cruise, SimulatedClock
+from vehicles import PAPER_TEST
 
 NAMES = ['down', 'left', 'up', 'right', 'tunnel']
 OUT = {'thrust_limits': 'std_msgs/msg/Float64MultiArray',
@@ -130,7 +131,7 @@ def test_every_tick_adds_up(start):
     assert saturated > 30 and len(answered) > 30
 
 
-@pytest.mark.parametrize('speed, thrusts, stern, tunnel, pitch, heave', ORACLE)
+@pytest.mark.parametrize('speed, thrusts, stern, tunnel, pitch, heave', PAPER_TEST)
 def test_the_papers_test(start, speed, thrusts, stern, tunnel, pitch, heave):
     """The table of the recomputed table of the paper's test comes out of the topics."""
     _, peer = start()

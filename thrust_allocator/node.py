@@ -221,11 +221,12 @@ class ThrustAllocator(Node):
         self._velocity = self._signs * through_water
         limits = self._bounds(self._velocity)
         stale = received.age(now) > timeout
-        since = ('since the clock went back' if received.time == NEVER
-                 else f'for {_age(received, now)} s')
-        self._findings.note(
-            'odometry', f'no odometry {since}: using fallback_velocity where it is tighter'
-            if stale and timeout else '')
+        text = ''
+        if stale and timeout:
+            since = ('since the clock went back' if received.time == NEVER
+                     else f'for {_age(received, now)} s')
+            text = f'no odometry {since}: using fallback_velocity where it is tighter'
+        self._findings.note('odometry', text)
         if stale:
             limits[0] = np.maximum(limits[0], self._fallback_limits[0])
             limits[1] = np.minimum(limits[1], self._fallback_limits[1])

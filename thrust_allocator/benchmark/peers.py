@@ -1,5 +1,6 @@
 """Allocators to compare with: each set up once, as its user would, and then asked tick by tick."""
 
+from abc import ABC, abstractmethod
 from importlib import import_module
 
 import numpy as np
@@ -9,7 +10,7 @@ from thrust_allocator.vehicle import Vehicle
 NARROW = 1e-9  # bounds closer than this count as equal, for solvers that want them apart [N]
 
 
-class Peer:
+class Peer(ABC):
     """An allocator: `solve` returns thrusts, whatever it needs for that is its own time."""
 
     name: str
@@ -33,6 +34,7 @@ class Peer:
                         + (self.matrix.T * self.wrench_weights) @ self.matrix)
         self.gradient = -(self.matrix.T * self.wrench_weights)  # g, (p, m)
 
+    @abstractmethod
     def solve(self, wrench: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """
         Allocate one tick.
@@ -41,7 +43,6 @@ class Peer:
         :param limits: (2, p), row 0 lower, row 1 upper [N].
         :return: thrusts, (p,) [N].
         """
-        raise NotImplementedError
 
 
 class Ours(Peer):

@@ -124,7 +124,6 @@ _THRUSTER_NAMES = Parameter('thruster_names', Names(), REQUIRED, '', 'the order 
 class Parameters:
     """A vehicle's parameters, checked: no missing, unknown or impossible value among them."""
 
-    given: Mapping[str, Any]  # as it was given
     values: Mapping[str, Any]  # by full name, e.g. 'thrusters.up.weight'; defaults filled in
     definitions: Mapping[str, Parameter]  # of the same names
     warnings: tuple[str, ...]
@@ -167,8 +166,8 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
         warnings.append(f'{mistake}; it is ignored')
     values = {name: _read(given, name, parameter) for name, parameter in definitions.items()}
     _check_together(values, thrusters)
-    return Parameters(MappingProxyType(dict(given)), MappingProxyType(values),
-                      MappingProxyType(definitions), tuple(sorted(warnings)))
+    return Parameters(MappingProxyType(values), MappingProxyType(definitions),
+                      tuple(sorted(warnings)))
 
 
 def _read(given: Mapping[str, Any], name: str, parameter: Parameter) -> Any:

@@ -16,9 +16,9 @@ from ros_peer import Peer, TYPES_OUT
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_srvs.srv import SetBool
 from test_allocation import daqp_optimum
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.node import ThrustAllocator
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.physics.vehicle import Vehicle
 
 NAMES = ['down', 'left', 'up', 'right', 'tunnel']
 PERIOD = 20 * 10**6  # of the default rate [ns]

@@ -50,7 +50,7 @@ def variant(tmp_path):
 def start(mt2012):
     """Return a function that starts the node and a peer in a Context of their own."""
     from ros_peer import Peer, ros_context  # not before the environment above
-    from thrust_allocator.node import ThrustAllocator
+    from thrust_allocator.ros.node import ThrustAllocator
 
     with ExitStack() as stack:
         def start_node(*rules, file=mt2012, remap='', kind=Peer, **options):

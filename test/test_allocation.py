@@ -5,12 +5,12 @@ from dataclasses import replace
 import daqp
 import numpy as np
 import pytest
-import thrust_allocator.allocation as allocation_module
-from thrust_allocator.active_set import ActiveSet
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.vehicle import Vehicle
+import thrust_allocator.solve.problem as allocation_module
+from thrust_allocator.solve.active_set import ActiveSet
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.physics.vehicle import Vehicle
 from vehicles import HEAVE, mt2012, PAPER_TEST, paper_test, PITCH, random_vehicle, thruster
 
 

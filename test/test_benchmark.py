@@ -7,7 +7,7 @@ import sys
 import daqp
 import numpy as np
 import pytest
-from thrust_allocator.allocation import AllocationProblem
+from thrust_allocator.solve.problem import AllocationProblem
 from thrust_allocator.benchmark.solvers import Measured, PEERS
 from thrust_allocator.benchmark.ticks import (
     mt2012, paper_sweep, random_vehicle, smooth_walk, switching_walk, Walk)

@@ -5,10 +5,10 @@ import math
 from hypothesis import assume, given, strategies as st
 import numpy as np
 import pytest
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bollard_equivalent import bollard_equivalent, thrust_in_flow
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.tunnel import TunnelLoss
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bollard_equivalent import bollard_equivalent, thrust_in_flow
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.models.tunnel import TunnelLoss
 from vehicles import mt2012, paper_test, PITCH, propeller_loss
 
 LIMITS = st.tuples(st.floats(-500.0, -1.0), st.floats(1.0, 500.0))

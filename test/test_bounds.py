@@ -6,10 +6,10 @@ import math
 from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.flow import FlowAtThrusters
-from thrust_allocator.tunnel import TunnelLoss
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.flow import FlowAtThrusters
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.vehicle import Vehicle
 from vehicles import mt2012, PAPER_TEST, paper_test, propeller_loss, random_vehicle, thruster
 
 BOLLARD = (-68.2, 120.1)

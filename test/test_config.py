@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import linprog
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.frames import DOFS
-from thrust_allocator.parameter_file import read_parameter_file
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.tunnel import TunnelLoss
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.parameters.file import read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.vehicle import Vehicle
 
 CONFIG = Path(__file__).resolve().parent.parent / 'config'
 FILES = sorted(file.stem for file in CONFIG.glob('*.yaml'))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ros_peer import Peer, ros_context, TYPES_IN, TYPES_OUT
 from thrust_allocator import demo
-from thrust_allocator.node import ThrustAllocator
+from thrust_allocator.ros.node import ThrustAllocator
 from vehicles import PAPER_TEST
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -7,8 +7,8 @@ import re
 import pytest
 from rclpy.parameter import parameter_value_to_python, Parameter
 from test_documentation import shown
-from thrust_allocator.parameter_types import Real
-from thrust_allocator.parameters import MODELS, NODE, THRUSTER
+from thrust_allocator.parameters.types import Real
+from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
 
 DOCUMENT = Path(__file__).resolve().parent.parent / 'doc/parameters.md'
 OF_EVERY_NODE = {'use_sim_time', 'start_type_description_service'}

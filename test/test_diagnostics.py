@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from ros_peer import cruise
 from std_msgs.msg import Float64MultiArray
-import thrust_allocator.allocation as allocation_module
+import thrust_allocator.solve.problem as allocation_module
 from thrust_allocator.diagnosis import Findings, Level
 
 WRENCH = [60.0, 0.0, 10.0, 0.0, 20.0, -15.0]

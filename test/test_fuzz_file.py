@@ -9,12 +9,12 @@ import sys
 from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 import yaml
 
 ROOT = Path(__file__).resolve().parent.parent

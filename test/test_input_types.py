@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 import pytest
 from rclpy.qos import ReliabilityPolicy
 from ros_peer import Peer, ros_context, TYPES_IN
-from thrust_allocator.node import ThrustAllocator
-from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.parameters.types import ParameterError
 
 WRENCH = np.array([60.0, 10.0, 20.0, 5.0, 30.0, -15.0])
 TWIST = np.array([1.0, 0.3, -0.2, 0.05, 0.1, -0.1])

@@ -8,9 +8,11 @@ import pytest
 import thrust_allocator
 
 PACKAGE = Path(thrust_allocator.__file__).parent
-WITH_ROS = {'node', 'ros_parameters', 'messages', 'outputs', 'markers', 'demo', 'soak',
-            '__main__'}
-MODULES = sorted({file.stem for file in PACKAGE.glob('*.py')} - WITH_ROS - {'__init__'})
+WITH_ROS = {'demo', 'soak', '__main__'}
+FOLDERS = ('physics', 'physics.models', 'solve', 'parameters')
+MODULES = sorted({file.stem for file in PACKAGE.glob('*.py')} - WITH_ROS - {'__init__'}) + [
+    f'{folder}.{file.stem}' for folder in FOLDERS
+    for file in sorted((PACKAGE / folder.replace('.', '/')).glob('[a-z]*.py'))]
 
 
 @pytest.mark.parametrize('module', MODULES)

@@ -5,11 +5,11 @@ import numpy as np
 from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import rate_limited, ThrustBounds
-from thrust_allocator.parameter_file import read_parameter_file
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
+from thrust_allocator.parameters.file import read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 from vehicles import mt2012
 
 AHEAD = np.array([600.0, 0.0, 30.0, 0.0, 40.0, 10.0])  # frd axes: out of reach, so bounds count

@@ -8,7 +8,7 @@ import pytest
 from rclpy.parameter import Parameter
 from ros_peer import TYPES_OUT
 from test_live_parameters import AHEAD, change, expected, GENTLE, TWIST, UP
-from thrust_allocator.parameters import MODELS, NODE, THRUSTER
+from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
 
 DOWN, TUNNEL = 'thrusters.down.', 'thrusters.tunnel.'
 READ_ONLY = {  # what shapes the node, and rclpy's own

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
 from ros_peer import cruise
-from thrust_allocator.markers import LONGEST, thruster_markers
+from thrust_allocator.ros.markers import LONGEST, thruster_markers
 from vehicles import mt2012
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -136,7 +136,7 @@ def test_the_node_draws_the_last_tick(start):
 def test_nothing_is_drawn_while_nobody_looks(start, monkeypatch):
     """Without a subscriber no marker is computed; with the first one the drawing begins."""
     drawings = []
-    monkeypatch.setattr('thrust_allocator.node.thruster_markers',
+    monkeypatch.setattr('thrust_allocator.ros.node.thruster_markers',
                         lambda *_: drawings.append(1) or MarkerArray())
     node, peer = start()
     timer, = (timer for timer in node.timers if timer.timer_period_ns == 200_000_000)

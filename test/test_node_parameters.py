@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rclpy.parameter import Parameter
 from test_node import NAMES
-from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.parameters.types import ParameterError
 
 
 def test_parameters_are_readable(start, variant):

@@ -8,7 +8,7 @@ from rclpy.parameter import Parameter
 from ros_peer import cruise
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
-from thrust_allocator.bollard_equivalent import thrust_in_flow
+from thrust_allocator.physics.bollard_equivalent import thrust_in_flow
 
 WRENCH, TWIST = cruise(0.9, side=1.0)
 UNITS = ('newton', 'bollard_newton', 'bollard_fraction')

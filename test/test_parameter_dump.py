@@ -4,9 +4,9 @@ import pytest
 from rcl_interfaces.msg import ParameterType
 from rclpy.parameter import parameter_value_to_python
 from test_live_parameters import change
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 import yaml
 
 FILES = sorted(default_parameter_file().parent.glob('*.yaml'))

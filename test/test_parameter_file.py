@@ -5,12 +5,12 @@ import sysconfig
 
 import pytest
 import rclpy
-from thrust_allocator import parameter_file
-from thrust_allocator.node import ThrustAllocator
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.parameters import file as parameter_file
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 
 HEAD = '/**:\n  ros__parameters:\n    '
 KINDS = 'a value or a list of values of one type: numbers, words, or true and false'
@@ -194,7 +194,8 @@ def test_the_default_file_is_looked_for_where_it_is_installed(tmp_path, monkeypa
     data, source = tmp_path / 'data', tmp_path / 'source'
     monkeypatch.delenv('AMENT_PREFIX_PATH', raising=False)
     monkeypatch.setattr(sysconfig, 'get_path', {'data': str(data)}.__getitem__)
-    monkeypatch.setattr(parameter_file, '__file__', str(source / 'thrust_allocator' / 'x.py'))
+    monkeypatch.setattr(parameter_file, '__file__', 
+                        str(source / 'thrust_allocator' / 'parameters' / 'x.py'))
     with pytest.raises(ParameterError) as caught:
         default_parameter_file()
     share = data / 'share' / 'thrust_allocator'

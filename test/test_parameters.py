@@ -6,9 +6,9 @@ import re
 
 from hypothesis import example, given, settings, strategies as st
 import pytest
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
 
 UP, DOWN, TUNNEL = 'thrusters.up.', 'thrusters.down.', 'thrusters.tunnel.'
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')

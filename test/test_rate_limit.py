@@ -8,8 +8,8 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from test_bounds import limits_of
-from thrust_allocator.bounds import rate_limited, ThrustBounds
-from thrust_allocator.tunnel import TunnelLoss
+from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
+from thrust_allocator.physics.models.tunnel import TunnelLoss
 from vehicles import mt2012, propeller_loss, thruster
 
 SIZE = 4

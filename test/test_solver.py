@@ -3,8 +3,8 @@
 import numpy as np
 import osqp
 import pytest
-import thrust_allocator.solver
-from thrust_allocator.solver import Solver
+import thrust_allocator.solve.osqp_solver
+from thrust_allocator.solve.osqp_solver import Solver
 
 SETTINGS = {'verbose': False, 'scaling': 0, 'polishing': False, 'eps_abs': 1e-7, 'eps_rel': 1e-14,
             'max_iter': 4000, 'check_termination': 1, 'check_dualgap': False, 'adaptive_rho': 1}
@@ -46,7 +46,7 @@ def test_another_osqp_is_used_through_its_interface(monkeypatch, missing):
     """Where the compiled object lacks what is expected of it, the interface serves."""
     monkeypatch.setattr(osqp.OSQP, 'compiled', property(
         lambda self: LacksOneThing(self._solver, missing)), raising=False)
-    monkeypatch.setattr(thrust_allocator.solver, 'COMPILED', 'compiled')
+    monkeypatch.setattr(thrust_allocator.solve.osqp_solver, 'COMPILED', 'compiled')
     solver = Solver(MATRIX, **SETTINGS)
     assert not solver.is_direct
     assert answers(solver) == answers(Solver(MATRIX, direct=False, **SETTINGS))
@@ -54,5 +54,5 @@ def test_another_osqp_is_used_through_its_interface(monkeypatch, missing):
 
 def test_osqp_without_the_compiled_object_is_used_through_its_interface(monkeypatch):
     """Where OSQP keeps no such object, the interface serves."""
-    monkeypatch.setattr(thrust_allocator.solver, 'COMPILED', 'elsewhere')
+    monkeypatch.setattr(thrust_allocator.solve.osqp_solver, 'COMPILED', 'elsewhere')
     assert not Solver(MATRIX, **SETTINGS).is_direct

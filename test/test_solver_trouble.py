@@ -4,8 +4,8 @@ from bench import assert_optimal, Bench, inside_limits, rest_of
 import numpy as np
 from numpy.testing import assert_allclose
 import pytest
-import thrust_allocator.allocation as allocation_module
-from thrust_allocator.solver import Solver
+import thrust_allocator.solve.problem as allocation_module
+from thrust_allocator.solve.osqp_solver import Solver
 
 WRENCH = [120.0, 0.0, 10.0, 0.0, 25.0, -15.0]  # frd axes
 OTHER = [-60.0, 0.0, 5.0, 0.0, -10.0, 20.0]

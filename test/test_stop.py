@@ -29,7 +29,10 @@ NODE = ('-m', 'thrust_allocator')
 BREAKING = """
 import os, signal, sys, threading
 import rclpy
-from thrust_allocator import __main__, allocation, bounds, inputs, node, solver
+from thrust_allocator import __main__, inputs
+from thrust_allocator.physics import bounds
+from thrust_allocator.ros import node
+from thrust_allocator.solve import osqp_solver as solver, problem as allocation
 
 broken = threading.Event()
 signal.signal(signal.SIGUSR1, lambda *_: broken.set())
@@ -191,7 +194,8 @@ def test_the_last_zeros_are_waited_for(launch):
     """After the zeros the node waits for acknowledgement, gets it, and lingers for the others."""
     run = launch('-c', """
 import sys
-from thrust_allocator import __main__, node
+from thrust_allocator import __main__
+from thrust_allocator.ros import node
 from rclpy.publisher import Publisher
 
 def told(owner, name, word):

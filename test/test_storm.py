@@ -9,13 +9,13 @@ from numpy.testing import assert_allclose
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.frames import DOFS
-from thrust_allocator.parameter_file import is_of_every_node
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.ros_parameters import plain
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.parameters.file import is_of_every_node
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.ros.parameters import plain
+from thrust_allocator.physics.vehicle import Vehicle
 
 CHANGES = 1000  # half of them invalid
 PERIOD = 0.01  # between two wrenches, and two changes [s]

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.parameter_file import read_parameter_file
-from thrust_allocator.parameters import read_parameters
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.parameters.file import read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
 from thrust_allocator.study import findings
 from thrust_allocator.study.authority import Authority, HELD
 from thrust_allocator.study.grid import Case, evaluate
 from thrust_allocator.study.manoeuvre import Manoeuvre
 from thrust_allocator.study.sweep import without
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.vehicle import Vehicle
 from vehicles import mt2012, PITCH, random_vehicle, thruster
 
 CONFIG = Path(__file__).resolve().parent.parent / 'config'

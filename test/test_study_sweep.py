@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from thrust_allocator.bollard_equivalent import bollard_equivalent
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.flow import FlowAtThrusters
+from thrust_allocator.physics.bollard_equivalent import bollard_equivalent
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.flow import FlowAtThrusters
 from thrust_allocator.study import findings
 from thrust_allocator.study.directions import directions, most_telling
 from thrust_allocator.study.errors import StudyError
@@ -14,7 +14,7 @@ from thrust_allocator.study.grid import Case, evaluate, evaluate_all
 from thrust_allocator.study.manoeuvre import Manoeuvre, paper_test
 from thrust_allocator.study.sweep import (
     ALLOCATORS, DRIVERS, Drivers, pseudo_inverse, shares, sweep, without)
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.vehicle import Vehicle
 from vehicles import HEAVE, mt2012, paper_test as tick, PITCH, propeller_loss, thruster
 
 # What the vehicle gets in the paper's test, recomputed: speed; pitch short by [N*m] and heave

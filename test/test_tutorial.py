@@ -8,10 +8,10 @@ import numpy as np
 from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
-from thrust_allocator.parameter_file import read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.parameters.file import read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 import yaml
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -6,10 +6,10 @@ import math
 from hypothesis import assume, given, settings, strategies as st
 import numpy as np
 import pytest
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.vehicle import Vehicle
 
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
 COLUMNS = {  # physics: x forward, y starboard, z down; thrust axes meet the hull axis ahead

@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.propeller import PropellerLoss
-from thrust_allocator.tunnel import TunnelLoss
-from thrust_allocator.vehicle import Thruster, Vehicle
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 # The table of the paper's test, recomputed: speed; thrusts down, left, up, right, tunnel; limits of
 # a stern thruster; limit of the tunnel; pitch and heave that are reached

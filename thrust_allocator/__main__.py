@@ -9,10 +9,10 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
-from thrust_allocator.node import ThrustAllocator
-from thrust_allocator.parameter_file import (
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.parameters.file import (
     check_parameter_file, command_line_values, default_parameter_file, NODE_NAME)
-from thrust_allocator.parameter_types import ParameterError
+from thrust_allocator.parameters.types import ParameterError
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -5,9 +5,9 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from thrust_allocator.allocation import Allocation
-from thrust_allocator.frames import DOFS
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import Allocation
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Vehicle
 
 SLACK = 0.5  # [N, N*m], with SLACK_SHARE of the command: what may be unallocated without a word
 SLACK_SHARE = 0.01

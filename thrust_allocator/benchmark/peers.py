@@ -4,8 +4,8 @@ from abc import ABC, abstractmethod
 from importlib import import_module
 
 import numpy as np
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.vehicle import Vehicle
 
 NARROW = 1e-9  # bounds closer than this count as equal, for solvers that want them apart [N]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.sparse
 from thrust_allocator.benchmark.peers import NARROW, Peer
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.vehicle import Vehicle
 
 
 class Quadprog(Peer):

@@ -17,10 +17,10 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
 from thrust_allocator import __main__ as process
-from thrust_allocator.messages import array_message
-from thrust_allocator.node import INPUT, ThrustAllocator
-from thrust_allocator.outputs import OUTPUT
-from thrust_allocator.parameter_file import NODE_NAME
+from thrust_allocator.ros.messages import array_message
+from thrust_allocator.ros.node import INPUT, ThrustAllocator
+from thrust_allocator.ros.outputs import OUTPUT
+from thrust_allocator.parameters.file import NODE_NAME
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012

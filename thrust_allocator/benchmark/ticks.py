@@ -3,12 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters import read_parameters
-from thrust_allocator.propeller import PropellerLoss
-from thrust_allocator.tunnel import TunnelLoss
-from thrust_allocator.vehicle import Thruster, Vehicle
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 RATE = 50.0  # ticks per second, the node's default [Hz]
 TOP_SPEED = 1.8  # of the paper's test [m/s]

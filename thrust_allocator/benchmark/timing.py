@@ -7,8 +7,8 @@ from time import perf_counter_ns
 import numpy as np
 from thrust_allocator.benchmark.peers import Ours, Peer
 from thrust_allocator.benchmark.ticks import Tick, Walk
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.vehicle import Vehicle
 
 REPEATS = 3  # of a sequence; a tick counts with the median of its times
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import shlex
 import sys
 
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.frames import DOFS
-from thrust_allocator.parameter_file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import read_parameters
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import read_parameters
 from thrust_allocator.study import findings
 from thrust_allocator.study.directions import most_telling
 from thrust_allocator.study.errors import missing, StudyError
@@ -22,7 +22,7 @@ from thrust_allocator.study.options import nearest, Parser, parser
 from thrust_allocator.study.progress import Progress
 from thrust_allocator.study.sweep import DRIVERS, without
 from thrust_allocator.study.tables import write_grid
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.physics.vehicle import Vehicle
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.propeller import PropellerLoss
-from thrust_allocator.vehicle import Thruster, Vehicle
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 ANGLES = 61  # from 0 to 180 degrees
 SPEEDS = 41  # from 0 to the largest of the study

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from thrust_allocator.frames import DOFS
+from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import Manoeuvre, unit

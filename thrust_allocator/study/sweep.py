@@ -5,12 +5,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bollard_equivalent import thrust_in_flow
-from thrust_allocator.bounds import ThrustBounds
-from thrust_allocator.flow import FlowAtThrusters
-from thrust_allocator.tunnel import TunnelLoss
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bollard_equivalent import thrust_in_flow
+from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.flow import FlowAtThrusters
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.vehicle import Vehicle
 
 ALLOCATORS = {'pseudo-inverse': 'pseudo-inverse, clamped',
               'fixed bounds': 'QP, bounds fixed at Bollard',

@@ -10,8 +10,8 @@ and Tolstonogov (2017), which give the loss at full speed only.
 from math import exp, log, sqrt
 
 from scipy.special import wrightomega
-from thrust_allocator.propeller import PropellerLoss
-from thrust_allocator.tunnel import TunnelLoss
+from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.models.tunnel import TunnelLoss
 
 Loss = PropellerLoss | TunnelLoss | None
 

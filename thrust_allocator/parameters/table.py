@@ -7,8 +7,8 @@ import math
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from thrust_allocator.frames import DOFS, FRAMES
-from thrust_allocator.parameter_types import (
+from thrust_allocator.physics.frames import DOFS, FRAMES
+from thrust_allocator.parameters.types import (
     BollardThrust, Choice, Direction, Flag, LARGEST, Names, ParameterError, Real, Reals,
     Word)
 

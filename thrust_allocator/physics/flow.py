@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import hypot
 
 import numpy as np
-from thrust_allocator.vehicle import Thruster
+from thrust_allocator.physics.vehicle import Thruster
 
 
 class FlowAtThrusters:

@@ -6,7 +6,7 @@ import re
 import sysconfig
 from typing import Any
 
-from thrust_allocator.parameter_types import is_exponent, ParameterError, shown
+from thrust_allocator.parameters.types import is_exponent, ParameterError, shown
 import yaml
 
 NODE_NAME = 'thrust_allocator'
@@ -162,7 +162,7 @@ def default_parameter_file() -> Path:
     :raises ParameterError: if the package was installed without it.
     """
     places = [Path(sysconfig.get_path('data'), 'share', NODE_NAME),
-              Path(__file__).resolve().parent.parent]
+              Path(__file__).resolve().parents[2]]
     try:
         from ament_index_python.packages import get_package_share_directory
         places.insert(0, Path(get_package_share_directory(NODE_NAME)))

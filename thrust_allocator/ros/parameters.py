@@ -7,9 +7,9 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
-from thrust_allocator.parameter_file import is_of_every_node
-from thrust_allocator.parameter_types import as_real, Flag, ParameterError, Real, Reals
-from thrust_allocator.parameters import Parameter, Parameters, read_parameters
+from thrust_allocator.parameters.file import is_of_every_node
+from thrust_allocator.parameters.types import as_real, Flag, ParameterError, Real, Reals
+from thrust_allocator.parameters.table import Parameter, Parameters, read_parameters
 
 
 def take_overrides(node: Node) -> Parameters:

@@ -12,9 +12,9 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
-from thrust_allocator.bollard_equivalent import bollard_equivalent
-from thrust_allocator.messages import array_message, fill_wrench
-from thrust_allocator.vehicle import Thruster
+from thrust_allocator.physics.bollard_equivalent import bollard_equivalent
+from thrust_allocator.ros.messages import array_message, fill_wrench
+from thrust_allocator.physics.vehicle import Thruster
 
 OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 ACKNOWLEDGE = 0.2  # the longest wait for the last setpoints to be acknowledged [s]

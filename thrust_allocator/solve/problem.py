@@ -4,10 +4,10 @@ from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.active_set import ActiveSet
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.solver import Solver
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.solve.active_set import ActiveSet
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.solve.osqp_solver import Solver
+from thrust_allocator.physics.vehicle import Vehicle
 
 TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
 ROUNDING = 4.0 * np.finfo(float).eps  # of the whitened gradient, times thrusters and condition

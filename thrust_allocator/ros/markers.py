@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
 import numpy as np
 from std_msgs.msg import ColorRGBA
-from thrust_allocator.vehicle import Thruster
+from thrust_allocator.physics.vehicle import Thruster
 from visualization_msgs.msg import Marker, MarkerArray
 
 LONGEST = 0.5  # length of the largest Bollard thrust, in spans of the vehicle

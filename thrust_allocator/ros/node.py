@@ -15,20 +15,20 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
-from thrust_allocator.allocation import AllocationProblem
-from thrust_allocator.bounds import rate_limited, ThrustBounds
+from thrust_allocator.solve.problem import AllocationProblem
+from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
 from thrust_allocator.diagnosis import allocation_figures, Findings, Level, Period, shortfall
-from thrust_allocator.frames import frd_signs
+from thrust_allocator.physics.frames import frd_signs
 from thrust_allocator.inputs import Inputs, NEVER, Received
-from thrust_allocator.markers import thruster_markers
-from thrust_allocator.messages import (
+from thrust_allocator.ros.markers import thruster_markers
+from thrust_allocator.ros.messages import (
     quaternion_components, status_message, twist_components, vector_components, wrench_components)
-from thrust_allocator.outputs import Outputs
-from thrust_allocator.parameter_file import NODE_NAME
-from thrust_allocator.parameter_types import ParameterError
-from thrust_allocator.parameters import Parameters
-from thrust_allocator.ros_parameters import changed, coerced, declare, take_overrides
-from thrust_allocator.vehicle import Vehicle
+from thrust_allocator.ros.outputs import Outputs
+from thrust_allocator.parameters.file import NODE_NAME
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.table import Parameters
+from thrust_allocator.ros.parameters import changed, coerced, declare, take_overrides
+from thrust_allocator.physics.vehicle import Vehicle
 from visualization_msgs.msg import MarkerArray
 
 # Best effort and depth 1 meet any publisher, and only the newest message counts

@@ -6,10 +6,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from thrust_allocator.frames import DOFS, frd_signs
-from thrust_allocator.parameters import Parameters
-from thrust_allocator.propeller import PropellerLoss
-from thrust_allocator.tunnel import TunnelLoss
+from thrust_allocator.physics.frames import DOFS, frd_signs
+from thrust_allocator.parameters.table import Parameters
+from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.models.tunnel import TunnelLoss
 
 
 @dataclass(frozen=True)

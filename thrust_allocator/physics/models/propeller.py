@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
-from thrust_allocator.parameter_types import LARGEST, ParameterError
+from thrust_allocator.parameters.types import LARGEST, ParameterError
 
 SECOND_CRITICAL_ANGLE_MAX = 2.0 * pi / 3.0  # [rad], ours: keeps it well below pi
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from thrust_allocator.flow import FlowAtThrusters
-from thrust_allocator.vehicle import Thruster, Vehicle
+from thrust_allocator.physics.flow import FlowAtThrusters
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 
 class ThrustBounds:

@@ -1,0 +1,1 @@
+"""Parameters of a vehicle: types, table, files, and what is built from them; no ROS."""

@@ -194,7 +194,7 @@ def test_the_default_file_is_looked_for_where_it_is_installed(tmp_path, monkeypa
     data, source = tmp_path / 'data', tmp_path / 'source'
     monkeypatch.delenv('AMENT_PREFIX_PATH', raising=False)
     monkeypatch.setattr(sysconfig, 'get_path', {'data': str(data)}.__getitem__)
-    monkeypatch.setattr(parameter_file, '__file__', 
+    monkeypatch.setattr(parameter_file, '__file__',
                         str(source / 'thrust_allocator' / 'parameters' / 'x.py'))
     with pytest.raises(ParameterError) as caught:
         default_parameter_file()

@@ -3,10 +3,10 @@
 from contextlib import ExitStack
 import copy
 import os
-from pathlib import Path
 import tempfile
 
 import pytest
+from support.paths import MT2012
 import yaml
 
 # Before any rclpy: in-process traffic stays inside its Context, logs go where they are deleted
@@ -14,8 +14,6 @@ os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
 os.environ.pop('ROS_LOCALHOST_ONLY', None)  # would override it
 _LOGS = tempfile.TemporaryDirectory(prefix='thrust_allocator_test_')
 os.environ['ROS_LOG_DIR'] = _LOGS.name
-
-MT2012 = Path(__file__).resolve().parent.parent / 'config' / 'mt2012.yaml'
 
 
 @pytest.fixture
@@ -49,7 +47,7 @@ def variant(tmp_path):
 @pytest.fixture
 def start(mt2012):
     """Return a function that starts the node and a peer in a Context of their own."""
-    from ros_peer import Peer, ros_context  # not before the environment above
+    from support.peer import Peer, ros_context  # not before the environment above
     from thrust_allocator.ros.node import ThrustAllocator
 
     with ExitStack() as stack:
@@ -67,9 +65,9 @@ def start(mt2012):
 
 
 @pytest.fixture
-def bench(start):
-    """Return a function that starts the node in simulated time and frd axes on a Bench."""
-    from bench import Bench
+def stepped(start):
+    """Return a function that starts the node in simulated time and frd axes on a SteppedPeer."""
+    from support.stepped_peer import SteppedPeer
 
     return lambda *rules, **options: start(
-        'use_sim_time:=true', 'message_frame:=frd', *rules, kind=Bench, **options)[1]
+        'use_sim_time:=true', 'message_frame:=frd', *rules, kind=SteppedPeer, **options)[1]

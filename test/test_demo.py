@@ -1,18 +1,17 @@
 """The demo: its table, that nobody else hears it, and that it does not hang."""
 
 import os
-from pathlib import Path
 import subprocess
 import sys
 
 import numpy as np
 import pytest
-from ros_peer import Peer, ros_context, TYPES_IN, TYPES_OUT
+from support.paths import ROOT
+from support.peer import Peer, ros_context, TYPES_IN, TYPES_OUT
+from support.vehicles import PAPER_TEST
 from thrust_allocator import demo
 from thrust_allocator.ros.node import ThrustAllocator
-from vehicles import PAPER_TEST
 
-ROOT = Path(__file__).resolve().parent.parent
 DOMAIN = 1 + os.getpid() % 100
 NAMESPACE = '/thrust_allocator_demo'
 TIMEOUT = 20.0  # [s]

@@ -1,20 +1,10 @@
 """The documents say what the code does."""
 
-from pathlib import Path
 import re
 
-from thrust_allocator.parameters.table import MODELS, NODE, REQUIRED, THRUSTER
-
-ROOT = Path(__file__).resolve().parent.parent
-
-
-def shown(default) -> str:
-    """Return a default value as the table of parameters shows it."""
-    if default is REQUIRED or default is None:
-        return 'required' if default is REQUIRED else '–'
-    if isinstance(default, tuple):
-        return '[' + ', '.join(map(shown, default)) + ']'
-    return f'{default:.5g}' if isinstance(default, float) else str(default).lower()
+from support.documents import shown
+from support.paths import ROOT
+from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
 
 
 def test_table_of_parameters_equals_the_code():

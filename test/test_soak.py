@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 import pytest
+from support.paths import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 SOAK = (sys.executable, '-m', 'thrust_allocator.soak')
 TIMEOUT = 60.0  # [s]
 FIGURES = re.compile(

@@ -1,20 +1,19 @@
 """Who follows the tutorial gets the vehicle on its drawing, and what the tutorial shows."""
 
 import math
-from pathlib import Path
 import re
 
 import numpy as np
 from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
+from support.paths import ROOT
 from thrust_allocator.parameters.file import read_parameter_file
-from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.vehicle import Vehicle
 import yaml
 
-ROOT = Path(__file__).resolve().parent.parent
 TUTORIAL = (ROOT / 'doc/tutorial.md').read_text('utf-8')
 TURN = math.sqrt(0.5)
 DRAWING = {  # position and direction of positive thrust: x forward, y starboard, z down

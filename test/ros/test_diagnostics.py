@@ -1,0 +1,219 @@
+"""What /diagnostics tells a pilot: levels, words and figures, once per second."""
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Wrench
+import numpy as np
+import pytest
+from std_msgs.msg import Float64MultiArray
+from support.peer import cruise
+from support.stepped_peer import SECOND
+from support.vehicles import NAMES
+from thrust_allocator.diagnosis import Findings, Level
+import thrust_allocator.solve.problem as allocation_module
+
+WRENCH = [60.0, 0.0, 10.0, 0.0, 20.0, -15.0]
+STILL = [0.0] * 6
+KEYS = {'age of wrench [s]', 'age of odometry [s]', 'thrusters off', 'thrusters at a bound',
+        'unallocated force [N]', 'unallocated moment [N*m]', 'solver status', 'iterations, mean',
+        'iterations, worst', 'tick time, mean [ms]', 'tick time, worst [ms]', 'ticks late'}
+
+
+def test_healthy(stepped):
+    """In the healthy state the level is OK, and all the figures are there and plausible."""
+    peer = stepped()
+    peer.steps(30, WRENCH, STILL)
+    level, message, figures = peer.report()
+    assert (level, message) == ('OK', 'allocating')
+    assert KEYS <= set(figures)
+    assert figures['solver status'] == 'solved'
+    assert figures['thrusters off'] == figures['thrusters at a bound'] == ''
+    assert float(figures['age of wrench [s]']) == float(figures['age of odometry [s]']) == 0.0
+    assert float(figures['iterations, mean']) == float(figures['iterations, worst']) == 1.0
+    assert 0.0 < float(figures['tick time, mean [ms]']) <= float(
+        figures['tick time, worst [ms]']) < 1000.0
+    assert (figures['ticks'], figures['ticks late']) == ('30', '0')
+
+
+def test_figures_are_those_since_the_last_report(stepped):
+    """Counts start again with every report."""
+    peer = stepped()
+    peer.steps(5, WRENCH, STILL)
+    peer.report()
+    peer.steps(3)
+    assert peer.report()[2]['ticks'] == '3'
+
+
+def test_keys_stay(stepped):
+    """The same figures are told while stopped as while allocating."""
+    peer = stepped()
+    peer.steps(2, WRENCH, STILL)
+    allocating = set(peer.report()[2])
+    peer.enable(False)
+    peer.steps(2)
+    assert set(peer.report()[2]) == allocating
+
+
+def test_ages(stepped):
+    """The ages are those of the last accepted messages, 'none' before the first."""
+    peer = stepped()
+    peer.steps(2)
+    figures = peer.report()[2]
+    assert figures['age of wrench [s]'] == figures['age of odometry [s]'] == 'none'
+    peer.step(None, STILL)
+    peer.silence('twist')
+    peer.step(WRENCH, period=SECOND)
+    peer.silence('wrench')
+    peer.send_wrench([np.nan] * 6)
+    peer.step(period=SECOND)
+    figures = peer.report()[2]
+    assert (figures['age of wrench [s]'], figures['age of odometry [s]']) == ('1.0', '2.0')
+
+
+@pytest.mark.parametrize('namespace', ['', '/alpha'])
+def test_one_status_per_second(start, namespace):
+    """By itself the node publishes one stamped status '<node>: allocation', at 1 Hz."""
+    node, peer = start(remap=f'__ns:={namespace or "/"}')
+    received = []
+    peer.create_subscription(DiagnosticArray, '/diagnostics', received.append, 10)
+    peer.settle(WRENCH, STILL)
+    peer.wait_until(lambda: any(array.status[0].level == b'\x00' for array in received),
+                    'a report of the healthy state')
+    (status,), stamp = received[-1].status, received[-1].header.stamp
+    assert status.name == 'thrust_allocator: allocation' and status.message == 'allocating'
+    assert all(isinstance(pair.value, str) for pair in status.values)
+    assert abs(stamp.sec - node.get_clock().now().nanoseconds * 1e-9) < 60.0
+    assert [timer.timer_period_ns for timer in node.timers].count(SECOND) == 1
+
+
+def test_saturation(stepped):
+    """The paper's test at 0.9 m/s: the tunnel is at its limit and heave is off by 29.6 N."""
+    peer = stepped()
+    wrench, twist = cruise(0.9, side=1.0)
+    peer.step(wrench, twist)
+    level, message, figures = peer.report()
+    assert (level, message) == ('WARN', 'tunnel at its limit; heave 29.6 N off its command')
+    assert figures['thrusters at a bound'] == 'tunnel'
+    assert figures['unallocated force [N]'] == '29.56'
+    assert figures['unallocated moment [N*m]'] == '0.23'
+    peer.step(*cruise(0.3, side=1.0))
+    assert peer.report()[:2] == ('OK', 'allocating')
+
+
+def test_saturation_of_several(stepped):
+    """Far out of reach, all thrusters and DOFs concerned are named."""
+    peer = stepped()
+    peer.step([3000.0, 0.0, 500.0, 0.0, 0.0, 0.0], STILL)
+    message = peer.report()[1]
+    assert message.startswith('down, left, up, right at the limit; surge 2556.2 N, heave 496')
+    assert message.endswith('off their command')
+
+
+@pytest.mark.parametrize('heave, told', [(122.1 + 1.6, False), (122.1 + 2.0, True)])
+def test_what_saturation_is_worth_a_word(stepped, heave, told):
+    """A shortfall of 1 % of the command and 0.5 N more is passed over in silence."""
+    peer = stepped(*(f'wrench_weights.{dof}:=0.0' for dof in ('surge', 'pitch', 'yaw')),
+                   *(f'thrusters.{name}.enabled:=false' for name in NAMES[:4]))
+    peer.step([0.0, 0.0, heave, 0.0, 0.0, 0.0], STILL)
+    level, message, figures = peer.report()
+    assert figures['thrusters at a bound'].endswith('tunnel')
+    assert (level, 'tunnel at' in message) == (('WARN', True) if told else ('OK', False))
+
+
+def test_a_command_without_weight(stepped):
+    """A command in a DOF of weight 0 is a WARN that names the DOF."""
+    peer = stepped()
+    peer.step([0.0, 30.0, 0.0, -5.0, 0.0, 0.0], STILL)
+    level, message, _ = peer.report()
+    assert level == 'WARN' and 'at its limit' not in message
+    assert all(f'{dof} is commanded but not controlled' in message for dof in ('sway', 'roll'))
+    peer.step([10.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert peer.report()[0] == 'OK'
+
+
+@pytest.mark.parametrize('topic, kind', [('cmd_wrench', Wrench),
+                                         ('thruster_setpoints', Float64MultiArray)])
+def test_two_publishers(stepped, topic, kind):
+    """A second publisher on a command topic is a WARN as long as it is there."""
+    peer = stepped()
+    peer.steps(2, WRENCH, STILL)
+    assert peer.report()[0] == 'OK'
+    second = peer.create_publisher(kind, topic, 1)
+    peer.wait_until(lambda: peer.count_publishers(topic) == 2, 'the second publisher')
+    peer.step()
+    assert peer.report()[:2] == ('WARN', f'2 publishers on {topic}')
+    peer.destroy_publisher(second)
+    peer.wait_until(lambda: peer.count_publishers(topic) == 1, 'its end')
+    peer.step()
+    assert peer.report()[0] == 'OK'
+
+
+def test_several_findings(stepped):
+    """All that is wrong stands in the one line, and is logged when it comes and when it goes."""
+    peer = stepped()
+    peer.steps(50)
+    level, message, _ = peer.report()
+    assert level == 'WARN' and 'no wrench: zero setpoints' in message
+    assert 'no odometry yet: using fallback_velocity' in message
+    peer.steps(50, WRENCH, STILL)
+    assert peer.report()[:2] == ('OK', 'allocating')
+    for text in ('no wrench', 'no odometry'):
+        peer.wait_until(lambda: len(peer.logged(text)) >= 2, f'the log of {text}')
+        assert [line.split(':')[0] for line in peer.logged(text)] == ['WARN', 'INFO']
+
+
+class Log:
+    """A logger that keeps what it is given."""
+
+    def __init__(self):
+        self.lines = []
+
+    def __getattr__(self, level):
+        return lambda text: self.lines.append((level, text))
+
+
+def test_findings_are_logged_once_each_way():
+    """A finding is logged when it appears and when it is over, by its level; the worst leads."""
+    log = Log()
+    findings = Findings(log)
+    assert findings.overall() == (Level.OK, 'allocating')
+    for text in ('late', 'later', 'latest'):
+        findings.note('time', text)
+    findings.note('solver', 'broken', Level.ERROR)
+    assert findings.overall() == (Level.ERROR, 'broken; latest')
+    for _ in range(3):
+        findings.note('time', '')
+    assert findings.overall() == (Level.ERROR, 'broken')
+    findings.note('time', 'late again')
+    assert log.lines == [('warning', 'late'), ('error', 'broken'), ('info', 'no longer: latest'),
+                         ('warning', 'late again')]
+
+
+def test_a_brief_failure_is_reported(stepped, monkeypatch):
+    """A single tick that OSQP did not solve still stands in the next report."""
+    peer = stepped()
+    peer.steps(2, WRENCH, STILL)
+    solve = allocation_module.Solver.solve
+    with monkeypatch.context() as patch:
+        patch.setattr(allocation_module.Solver, 'solve', lambda self, *vectors: (
+            'maximum iterations reached', solve(self, *vectors)[1]))
+        peer.step()
+    peer.steps(3)
+    level, message, _ = peer.report()
+    assert level == 'ERROR' and 'maximum iterations reached' in message
+    peer.step()
+    assert peer.report()[0] == 'OK'
+
+
+def test_no_error_while_stopped(stepped, monkeypatch):
+    """Once the node is stopped, nothing is said of a solver that is not called any more."""
+    peer = stepped()
+    peer.steps(2, WRENCH, STILL)
+    with monkeypatch.context() as patch:
+        patch.setattr(allocation_module.Solver, 'solve',
+                      lambda self, *vectors: ('maximum iterations reached', 1))
+        peer.step()
+    peer.enable(False)
+    peer.step()
+    peer.report()
+    peer.steps(3)
+    assert peer.report()[:2] == ('WARN', 'disabled: zero setpoints')

@@ -1,0 +1,212 @@
+"""Velocity, current and broken messages on the running node: what counts, and for how long."""
+
+from itertools import cycle
+
+import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
+import pytest
+
+WRENCH = [60.0, 0.0, 10.0, 0.0, 20.0, -15.0]
+TWIST = [1.0, 0.3, -0.2, 0.05, 0.1, -0.1]
+FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
+CURRENT = np.array([0.7, -1.1, 0.4])  # [m/s], in the odometry's parent frame
+ANGLES = [(0.0, 0.0, 0.0), (np.pi / 2, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, -0.8),
+          (2.5, -0.6, 0.3), (-1.2, 1.4, 3.0)]  # yaw, pitch, roll [rad]
+
+
+def rotation(yaw, pitch, roll):
+    """Return the matrix (3, 3) that turns body axes into the parent frame's, Rz Ry Rx."""
+    (cz, cy, cx), (sz, sy, sx) = np.cos([yaw, pitch, roll]), np.sin([yaw, pitch, roll])
+    return (np.array([[cz, -sz, 0.0], [sz, cz, 0.0], [0.0, 0.0, 1.0]])
+            @ np.array([[cy, 0.0, sy], [0.0, 1.0, 0.0], [-sy, 0.0, cy]])
+            @ np.array([[1.0, 0.0, 0.0], [0.0, cx, -sx], [0.0, sx, cx]]))
+
+
+def quaternion(yaw, pitch, roll):
+    """Return the same rotation as a quaternion x, y, z, w, by the formula for Euler angles."""
+    (cz, cy, cx), (sz, sy, sx) = (np.cos(np.array([yaw, pitch, roll]) / 2.0),
+                                  np.sin(np.array([yaw, pitch, roll]) / 2.0))
+    return np.array([sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
+                     cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz])
+
+
+def drift(angles):
+    """Return the twist of a vehicle that the current carries along."""
+    return [*(rotation(*angles).T @ CURRENT), 0.0, 0.0, 0.0]
+
+
+def limits(tick):
+    """Return the limits of a tick, (10,)."""
+    return tick['thrust_limits']
+
+
+def test_no_odometry_ever(stepped):
+    """Before the first odometry the limits are those at fallback_velocity: WARN."""
+    peer = stepped('message_frame:=flu', 'fallback_velocity:=[0.8, 0.2, -0.1]')
+    expected = peer.limits_at(0.8, -0.2, 0.1)
+    for tick in peer.steps(3, WRENCH):
+        assert_array_equal(limits(tick), expected)
+    level, message, figures = peer.report()
+    assert level == 'WARN' and 'no odometry yet: using fallback_velocity' in message
+    assert figures['age of odometry [s]'] == 'none'
+    assert_array_equal(limits(peer.step(WRENCH, FLU * TWIST)), peer.limits_at(*TWIST))
+    peer.steps(3)
+    assert 'odometry' not in peer.report()[1]
+
+
+def test_stale_odometry(stepped):
+    """After odometry_timeout the tighter of last and fallback velocity counts per limit: WARN."""
+    peer = stepped('odometry_timeout:=0.2', 'fallback_velocity:=[0.15, 0.0, 0.0]')
+    moving, fallback = peer.limits_at(0.0, 0.5), peer.limits_at(0.15)
+    tighter = np.where(np.abs(moving) < np.abs(fallback), moving, fallback)
+    assert (tighter != moving).any() and (tighter != fallback).any()
+    peer.steps(20, WRENCH, [0.0, 0.5, 0.0, 0.0, 0.0, 0.0])
+    peer.silence('twist')
+    ticks = peer.steps(20)
+    stale = [(limits(tick) == tighter).all() for tick in ticks]
+    assert 8 <= stale.index(True) <= 11 and stale == sorted(stale)
+    assert all((limits(tick) == moving).all() for tick in ticks[:stale.index(True)])
+    level, message, figures = peer.report()
+    assert level == 'WARN' and 'no odometry for 0.4 s: using fallback_velocity' in message
+    assert figures['age of odometry [s]'] == '0.4'
+    assert (limits(peer.step(None, [0.0, 0.5, 0.0, 0.0, 0.0, 0.0])) == moving).all()
+    assert 'odometry' not in peer.report()[1]
+    peer.wait_until(lambda: peer.logged('no longer: no odometry for'), 'word of the recovery')
+    assert [line.split(':')[0] for line in peer.logged('no odometry for')] == ['WARN', 'INFO']
+
+
+@pytest.mark.parametrize('twist', [None, TWIST], ids=['none', 'some'])
+def test_no_odometry_expected(stepped, twist):
+    """With odometry_timeout 0 the lack of odometry is no finding, whether some came or none."""
+    peer = stepped('odometry_timeout:=0.0')
+    peer.steps(3, WRENCH, twist)
+    peer.silence('twist')
+    peer.steps(100)
+    assert 'odometry' not in peer.report()[1]
+    assert not peer.logged('odometry')
+
+
+@pytest.mark.parametrize('angles', ANGLES)
+@pytest.mark.parametrize('frame', ['frd', 'flu'])
+def test_drifting_with_the_current(stepped, angles, frame):
+    """A vehicle that drifts with the current has Bollard bounds, however it is turned."""
+    peer = stepped(f'message_frame:={frame}')
+    peer.current, peer.orientation = CURRENT, quaternion(*angles)
+    tick = peer.step(WRENCH, drift(angles))
+    assert_allclose(limits(tick), peer.node.vehicle.bollard_thrust.ravel(), atol=1e-9)
+    assert 'current' not in peer.report()[1]
+
+
+@pytest.mark.parametrize('angles', ANGLES)
+@pytest.mark.parametrize('frame', ['frd', 'flu'])
+def test_moving_through_the_current(stepped, angles, frame):
+    """The bounds are those at the velocity less the current, turned into the body by a matrix."""
+    peer = stepped(f'message_frame:={frame}')
+    peer.current, peer.orientation = CURRENT, 1.0005 * quaternion(*angles)  # nearly unit counts
+    through_water = np.array(TWIST) * (FLU if frame == 'flu' else 1.0)
+    tick = peer.step(WRENCH, drift(angles) + through_water)
+    assert_allclose(limits(tick), peer.limits_at(*TWIST), atol=1e-9)
+
+
+def assert_ignored(peer, tick, angles, why):
+    """Check that the current does not count, and that the diagnostics say why."""
+    assert_array_equal(limits(tick), peer.limits_at(*drift(angles)))
+    level, message, _ = peer.report()
+    assert level == 'WARN' and 'current ignored' in message and why in message
+
+
+def test_no_current(stepped):
+    """Without a current the velocity counts as through the water, and nothing is said."""
+    peer = stepped()
+    assert_array_equal(limits(peer.step(WRENCH, TWIST)), peer.limits_at(*TWIST))
+    assert 'current' not in peer.report()[1]
+
+
+@pytest.mark.parametrize('broken', [None, np.nan], ids=['silent', 'NaN'])
+def test_a_stale_current(stepped, broken):
+    """Older than current_timeout, a current is ignored: WARN; the next one counts again."""
+    peer, angles = stepped('current_timeout:=0.2'), ANGLES[4]
+    peer.current, peer.orientation = CURRENT, quaternion(*angles)
+    bollard = limits(peer.step(WRENCH, drift(angles)))
+    peer.current = None if broken is None else [0.1, broken, 0.2]
+    ticks = peer.steps(15)
+    counts = [(limits(tick) == bollard).all() for tick in ticks]
+    assert 8 <= counts.index(False) <= 11 and not any(counts[counts.index(False):])
+    assert_ignored(peer, ticks[-1], angles, 'none came for too long')
+    peer.current = CURRENT
+    assert_array_equal(limits(peer.step()), bollard)
+    peer.wait_until(lambda: peer.logged('no longer: current'), 'word of the recovery')
+    assert [line.split(':')[0] for line in peer.logged('current ignored')] == ['WARN', 'INFO']
+
+
+def test_a_current_from_another_frame(stepped):
+    """A current from another frame than the odometry's parent is ignored: WARN."""
+    peer, angles = stepped(), ANGLES[4]
+    peer.orientation = quaternion(*angles)
+    peer.send_current(CURRENT, frame='map')
+    assert_ignored(peer, peer.step(WRENCH, drift(angles)), angles, "'map'")
+    peer.send_current(CURRENT)
+    assert_allclose(limits(peer.step()), peer.node.vehicle.bollard_thrust.ravel(), atol=1e-9)
+
+
+@pytest.mark.parametrize('orientation', [
+    [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.002], [0.0, 0.0, 0.0, 0.998], [1.0, 0.0, 0.0, 1.0],
+    [0.0, 0.0, np.nan, 1.0], [np.nan] * 4, [0.0, 0.0, 0.0, np.inf], [1e100] * 4], ids=str)
+def test_an_orientation_that_is_none(stepped, orientation):
+    """With an orientation that is no unit quaternion the current is ignored: WARN."""
+    peer, angles = stepped(), ANGLES[0]
+    peer.current, peer.orientation = CURRENT, orientation
+    assert_ignored(peer, peer.step(WRENCH, drift(angles)), angles, 'no unit quaternion')
+    peer.orientation = [0.0, 0.0, 0.0, 1.0]
+    assert_allclose(limits(peer.step()), peer.node.vehicle.bollard_thrust.ravel(), atol=1e-9)
+
+
+CAUSES = [('cmd_wrench', 'beyond 1e+06', [1e308, 1.0001e6, -1.0001e6]),
+          ('odom', 'beyond 50', [1e308, 1e6, 50.001, -50.001]),
+          ('current', 'beyond 50', [1e308, 50.001, -50.001])]
+
+
+@pytest.mark.parametrize('topic, cause, value', [
+    (topic, cause, value) for topic, beyond, large in CAUSES
+    for cause, values in ((beyond, large), ('not finite', [np.nan, np.inf, -np.inf]))
+    for value in values])
+def test_nonsense(stepped, topic, cause, value):
+    """A message with one broken component is dropped whole and counted, and refreshes nothing."""
+    timeout = {'cmd_wrench': 'wrench', 'odom': 'odometry', 'current': 'current'}[topic]
+    peer = stepped(f'{timeout}_timeout:=0.2')
+    peer.current = [0.1, 0.2, 0.3]
+    peer.steps(3, WRENCH, TWIST)
+    before = peer.steps(3)[-1]
+    name, send, size = {'cmd_wrench': ('wrench', peer.send_wrench, 6),
+                        'odom': ('twist', peer.send_twist, 6),
+                        'current': ('current', peer.send_current, 3)}[topic]
+    peer.silence(name)
+    broken = cycle(np.where(np.eye(size, dtype=bool), value, 2.0))
+    peer.report()
+    for _ in range(8):
+        send(next(broken))
+        after = peer.step()
+        for key, values in before.items():
+            assert_array_equal(after[key], values)
+    level, message, figures = peer.report()
+    assert level == 'WARN' and f'messages dropped: {topic} {cause}' in message
+    assert figures[f'dropped: {topic} {cause}'] == '8'
+    for _ in range(4):
+        send(next(broken))
+        peer.step()
+    _, message, figures = peer.report()
+    assert {'cmd_wrench': 'no wrench', 'odom': 'no odometry for', 'current': 'current ignored'}[
+        topic] in message
+    assert figures[f'dropped: {topic} {cause}'] == '12'
+    peer.step()
+    assert 'messages dropped' not in peer.report()[1]
+
+
+def test_the_largest_values_count(stepped):
+    """1e6 N and N*m, 50 m/s and 50 rad/s are still inside what is accepted."""
+    peer = stepped()
+    peer.current = [50.0, -50.0, 50.0]
+    tick = peer.step([1e6, -1e6] * 3, [50.0, -50.0] * 3)
+    assert_allclose(tick['achieved_wrench'] + tick['unallocated_wrench'], [1e6, -1e6] * 3)
+    assert_array_equal(limits(tick), peer.limits_at(0.0, 0.0, 0.0, 50.0, -50.0, 50.0))
+    assert not any(key.startswith('dropped') for key in peer.report()[2])

@@ -1,0 +1,127 @@
+"""Rate limit and cut-off: their formulas, and what they do to the node."""
+
+from dataclasses import replace
+
+from hypothesis import given, strategies as st
+import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
+import pytest
+from support.stepped_peer import inside_limits
+from support.vehicles import limits_of, mt2012, NAMES, propeller_loss, thruster
+from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
+from thrust_allocator.physics.models.tunnel import TunnelLoss
+
+SIZE = 4
+thrusts = st.lists(st.floats(-200.0, 200.0), min_size=SIZE, max_size=SIZE).map(np.array)
+limits = st.tuples(*[st.lists(st.floats(0.0, 200.0), min_size=SIZE, max_size=SIZE)] * 2).map(
+    lambda rows: np.array([-np.array(rows[0]), rows[1]]))
+steps = st.lists(st.floats(1e-6, 500.0) | st.just(np.inf), min_size=SIZE, max_size=SIZE).map(
+    np.array)
+
+
+@given(limits, thrusts, steps)
+def test_rate_limits_are_those_documented(bounds, last, step):
+    """The part of the limits within a step of the last setpoint; else the nearest limit."""
+    lower, upper = rate_limited(bounds, last, step)
+    assert (bounds[0] <= lower).all() and (lower <= upper).all() and (upper <= bounds[1]).all()
+    for i in range(SIZE):
+        low, high, around = *bounds[:, i], (last[i] - step[i], last[i] + step[i])
+        if around[1] < low:  # the speed bound wins
+            expected = low, low
+        elif around[0] > high:
+            expected = high, high
+        else:
+            expected = max(low, around[0]), min(high, around[1])
+        assert (lower[i], upper[i]) == expected
+
+
+@given(limits, limits, thrusts, thrusts, steps)
+def test_rate_limits_are_continuous(bounds, other_bounds, last, other_last, step):
+    """The limits change by no more than the greatest change of what they follow from."""
+    change = np.abs(rate_limited(bounds, last, step) - rate_limited(other_bounds, other_last, step))
+    most = np.maximum(np.abs(bounds - other_bounds).max(axis=0), np.abs(last - other_last))
+    assert (change <= most + 1e-12).all()
+
+
+def test_no_rate_limit_by_default():
+    """An infinite step leaves the limits as they are, to the bit."""
+    bounds = np.array([[-1.0, 0.0, -2.5, 0.0], [0.0, 3.1, 2.5, 0.0]])
+    assert_array_equal(rate_limited(bounds, np.full(4, 1e6), np.full(4, np.inf)), bounds)
+
+
+def test_rate_limit_on_the_node(stepped):
+    """Tick for tick the limits are by the formula, and only the speed bound forces more."""
+    rates = {'down': 50.0, 'left': 400.0, 'up': 1e-3, 'tunnel': 100.0}  # [N/s]
+    peer = stepped(*(f'thrusters.{name}.max_rate:={rate}' for name, rate in rates.items()))
+    step = np.array([rates.get(name, np.inf) / 50.0 for name in NAMES])
+    random, last, forced, limited = np.random.default_rng(4), np.zeros(5), 0, 0
+    for i in range(300):
+        wrench = random.uniform(-150.0, 150.0, 6) if i % 20 == 0 else None
+        twist = random.uniform(-2.0, 2.0, 6) if i % 5 == 0 else None
+        tick = peer.step(wrench, twist)
+        lower, upper = peer.limits_at(*peer.twist).reshape(2, 5)
+        expected = [np.minimum(np.maximum(lower, last - step), upper),
+                    np.maximum(np.minimum(upper, last + step), lower)]
+        assert_array_equal(tick['thrust_limits'].reshape(2, 5), expected)
+        assert inside_limits(tick)
+        change = np.abs(tick['thruster_setpoints'] - last)
+        at_speed_bound = (tick['thruster_setpoints'] == lower) | (
+            tick['thruster_setpoints'] == upper)
+        assert ((change <= step * (1.0 + 1e-12) + 1e-12) | at_speed_bound).all()
+        forced += (change > 1.001 * step).sum()
+        limited += (np.abs(change - step) <= 1e-9).sum()
+        last = tick['thruster_setpoints']
+    assert forced > 5 and limited > 50
+
+
+LOSSES = {'propeller': propeller_loss(), 'tunnel': TunnelLoss(7.0, 1025.0 * 0.0707),
+          'constant': None}
+velocities = st.lists(st.floats(-5.0, 5.0), min_size=6, max_size=6)
+cutoffs = st.floats(0.0, 0.99)
+bollards = st.tuples(st.floats(-500.0, 0.0), st.floats(1e-3, 500.0))
+
+
+@given(st.sampled_from([*LOSSES.values()]), bollards, cutoffs, velocities)
+def test_cutoff_is_the_formula(loss, bollard, share, velocity):
+    """In either sense the limit is max(0, (limit - share T0) / (1 - share)), in every model."""
+    plain = thruster(bollard_thrust=bollard, loss=loss)
+    before, after = limits_of(plain, replace(plain, cutoff=share), velocity=velocity).T
+    for limit, found, most in zip(np.abs(before), np.abs(after), np.abs(bollard)):
+        expected = max(0.0, (limit - share * most) / (1.0 - share))
+        assert found == pytest.approx(expected, abs=1e-9)
+        assert found <= most and found <= limit + 1e-12 * most
+        if limit < (share - 1e-12) * most:
+            assert found == 0.0
+    assert after[0] <= 0.0 <= after[1]
+
+
+@given(st.sampled_from([*LOSSES.values()]), bollards, st.floats(0.0, 1.0, exclude_max=True))
+def test_cutoff_takes_nothing_at_rest(loss, bollard, share):
+    """At rest the limits are the Bollard ones exactly, whatever the share."""
+    one = thruster(bollard_thrust=bollard, loss=loss)
+    assert limits_of(replace(one, cutoff=share), velocity=[0.0] * 6)[:, 0].tolist() == [*bollard]
+
+
+@given(bollards, cutoffs, st.floats(0.0, 2.0), st.floats(0.0, 2.0))
+def test_cutoff_has_no_jump(bollard, share, speed, other):
+    """A limit with cut-off changes 1 / (1 - share) times as much as without, at most."""
+    plain = thruster(bollard_thrust=bollard, loss=LOSSES['tunnel'])
+    cut = replace(plain, cutoff=share)
+    one, two = (limits_of(plain, cut, velocity=[0.0, value, 0.0, 0.0, 0.0, 0.0])
+                for value in (speed, other))
+    change = np.abs(one - two)
+    assert (change[:, 1] <= change[:, 0] / (1.0 - share) + 1e-9).all()
+
+
+def test_cutoff_on_the_node(stepped):
+    """A tunnel with cut-off 0.2 is out at 0.9 m/s, and the stern does without it."""
+    peer = stepped('thrusters.tunnel.cutoff:=0.2')
+    without, vehicle = ThrustBounds(mt2012()), mt2012(thrusters__tunnel__cutoff=0.2)
+    for speed, out in ((0.0, False), (0.3, False), (0.9, True)):
+        tick = peer.step([20.0, 0.0, 0.0, 0.0, 50.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0])
+        full = without(np.array(peer.twist))
+        found = tick['thrust_limits'].reshape(2, 5)
+        assert_array_equal(found[:, :4], full[:, :4])
+        share = 0.2 * vehicle.bollard_thrust[:, 4]
+        assert_allclose(found[:, 4], [0.0, 0.0] if out else (full[:, 4] - share) / 0.8)
+        assert (tick['thruster_setpoints'][4] == 0.0) == out

@@ -1,0 +1,1 @@
+"""What the tests share: vehicles, peers of the node, processes, and a second solver."""

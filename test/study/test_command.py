@@ -263,7 +263,7 @@ def test_what_is_not_installed_is_named(module, args, extra, tmp_path, capsys, m
     assert run('--output', tmp_path / 'out', *SHORT, *args) == 1
     error = capsys.readouterr().err
     assert error.count('\n') == 1
-    assert f"is not installed: pip install 'thrust_allocator[{extra}]'" in error
+    assert f"is not installed: pip install '.[{extra}]'" in error
     assert not (tmp_path / 'out').exists()
 
 

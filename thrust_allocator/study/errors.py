@@ -10,5 +10,5 @@ class StudyError(Exception):
 
 
 def missing(what: str, extra: str) -> str:
-    """Say that something is not installed, and which extra of this package brings it."""
-    return f"{what}, is not installed: pip install 'thrust_allocator[{extra}]'"
+    """Say that something is not installed, and which extra of this package brings it in a clone."""
+    return f"{what}, is not installed: pip install '.[{extra}]'"

@@ -15,6 +15,7 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/config', glob('config/*.yaml')),
+        (f'lib/{package_name}', glob('executables/*')),  # where `ros2 run` looks for them
     ],
     python_requires='>=3.10',
     # SciPy, whose matrices OSQP takes, and joblib come with osqp
@@ -32,10 +33,6 @@ setup(
     description='Thrust allocation for AUVs and ROVs with bounds that move with the speed',
     license='Apache-2.0',
     entry_points={
-        'console_scripts': [
-            'node = thrust_allocator.__main__:main',
-            'demo = thrust_allocator.demo:main',
-            'study = thrust_allocator.study.__main__:main',
-        ],
+        'console_scripts': ['thrust_allocator = thrust_allocator.__main__:main'],
     },
 )

@@ -29,9 +29,9 @@ NODE = ('-m', 'thrust_allocator')
 BREAKING = """
 import os, signal, sys, threading
 import rclpy
-from thrust_allocator import __main__, inputs
+from thrust_allocator import inputs
 from thrust_allocator.physics import bounds
-from thrust_allocator.ros import node
+from thrust_allocator.ros import node, process
 from thrust_allocator.solve import osqp_solver as solver, problem as allocation
 
 broken = threading.Event()
@@ -47,7 +47,7 @@ def fail(original, *arguments):
     raise ArithmeticError('broken on purpose')
 
 %s
-sys.exit(__main__.main())
+sys.exit(process.main())
 """
 
 
@@ -195,8 +195,7 @@ def test_the_last_zeros_are_waited_for(launch):
     run = launch('-c', """
 from rclpy.publisher import Publisher
 import sys
-from thrust_allocator import __main__
-from thrust_allocator.ros import node
+from thrust_allocator.ros import node, process
 
 def told(owner, name, word):
     original = getattr(owner, name)
@@ -213,7 +212,7 @@ told(Publisher, 'wait_for_all_acked',
      lambda own, result: f'acknowledged {own[0].topic.split("/")[-1]} {result}')
 node.time = Time()
 told(node.time, 'sleep', lambda own, result: f'lingered {own}')
-sys.exit(__main__.main())
+sys.exit(process.main())
 """)
     run.wait_until_allocating()
     run.process.send_signal(signal.SIGTERM)
@@ -299,9 +298,9 @@ def test_a_context_shut_down_from_outside(breaking, change):
 
 @pytest.mark.parametrize('number', SIGNALS)
 @pytest.mark.parametrize('place', [
-    '__main__, "default_parameter_file"', 'rclpy, "init"',
+    'process, "default_parameter_file"', 'rclpy, "init"',
     'allocation.AllocationProblem, "__init__"', 'node.ThrustAllocator, "create_service"',
-    '__main__, "SingleThreadedExecutor"'])
+    'process, "SingleThreadedExecutor"'])
 def test_signals_during_the_start(launch, place, number):
     """A signal before the first tick ends the start without a word too much, with status 0."""
     run = launch('-c', BREAKING % f"""

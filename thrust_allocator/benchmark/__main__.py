@@ -1,6 +1,7 @@
 """Measure the allocator: `python -m thrust_allocator.benchmark`, all of it or some parts."""
 
 import argparse
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 import os
 from pathlib import Path
@@ -40,10 +41,15 @@ def _svg(path: str) -> Path:
     return chosen
 
 
-def main() -> int:
-    """Run the parts that the command line names and print their tables."""
+def main(args: Sequence[str] | None = None) -> int:
+    """
+    Run the parts that the command line names and print their tables.
+
+    :param args: the command line, program name first; None for the process's own.
+    :return: the exit status, 0. A mistake on the command line exits with status 2.
+    """
     parser = argparse.ArgumentParser(
-        prog='python -m thrust_allocator.benchmark',
+        prog='benchmark',
         description='Measure the allocator beside others. The extra `bench` brings them along; '
         'one that is not installed is reported as missing.')
     parser.add_argument('parts', nargs='*', metavar='PART',
@@ -51,7 +57,7 @@ def main() -> int:
     parser.add_argument('--plot', type=_svg, metavar='FILE',
                         help='draw the growth as an SVG file; needs matplotlib and part growth')
     parser.add_argument('--quick', action='store_true', help='a short run, for a first look')
-    options = parser.parse_args()
+    options = parser.parse_args(None if args is None else args[1:])
     unknown = [part for part in options.parts if part not in PARTS]
     if unknown:
         parser.error(f'{unknown[0]} is no part, must be one of {", ".join(PARTS)}')

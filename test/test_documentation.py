@@ -5,6 +5,7 @@ import re
 from support.documents import shown
 from support.paths import ROOT
 from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
+from thrust_allocator.study.options import parser
 
 
 def test_table_of_parameters_equals_the_code():
@@ -35,3 +36,10 @@ def test_architecture_lists_every_module():
     modules = {str(file.relative_to(package).with_suffix('')) for file in package.rglob('*.py')
                if file.stem != '__init__' and file.parent.name not in ('study', 'benchmark')}
     assert set(listed) == modules
+
+
+def test_study_page_has_every_option():
+    """The page of the study names each option of its command line, and no other."""
+    page = (ROOT / 'doc/study.md').read_text('utf-8')
+    assert set(re.findall(r'`[^`\n]*(--\w+)', page)) | {'--output'} == {
+        option for option in parser()._option_string_actions} - {'-h', '--help'}

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from support.paths import CONFIG
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.table import read_parameters
 from thrust_allocator.physics.bounds import ThrustBounds
@@ -24,6 +25,11 @@ PAPER_TEST = (
 )
 NAMES = ['down', 'left', 'up', 'right', 'tunnel']  # of MT-2012
 HEAVE, PITCH = 2, 4
+
+
+def described(name: str) -> Vehicle:
+    """Return one of the vehicles that come with the package."""
+    return Vehicle.from_parameters(read_parameters(read_parameter_file(CONFIG / f'{name}.yaml')))
 
 
 def mt2012(**changes) -> Vehicle:

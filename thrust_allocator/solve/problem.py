@@ -25,6 +25,10 @@ class Allocation(NamedTuple):
     at_bound: np.ndarray  # (p,), -1: held at the lower limit, +1: at the upper one, 0: between
     status: str  # OSQP's own word, 'solved' unless something is wrong
     iterations: int  # OSQP's
+    reach: float = 1.0  # alpha, the share of the command that is attainable in its direction
+    direction_scale: float = 1.0  # of the command, to keep its direction
+    power_scale: float = 1.0  # of what that left, to keep within the power limit
+    power: float | None = None  # predicted, where it is limited [W]
 
     @property
     def solved(self) -> bool:

@@ -1,6 +1,8 @@
 """The allocation problem: known answers, a second solver, and the conditions of an optimum."""
 
 from dataclasses import replace
+import gc
+import weakref
 
 import numpy as np
 import pytest
@@ -184,3 +186,20 @@ def test_unsolved_tick_still_gives_the_optimum_that_osqp_was_started_from(monkey
     allocation = AllocationProblem(vehicle).solve(wrench, ThrustBounds(vehicle)(velocity))
     assert not allocation.solved
     assert allocation.thrusts == pytest.approx(PAPER_TEST[4][1], abs=0.006)
+
+
+def test_a_replaced_problem_is_freed_at_once():
+    """With the garbage collector off, none of 30 replaced problems and active sets stays alive."""
+    vehicle = mt2012()
+    problem = AllocationProblem(vehicle)
+    gone: list[weakref.ref] = []
+    gc.disable()
+    try:
+        for i in range(30):
+            problem.solve(np.ones(6), vehicle.bollard_thrust)
+            gone += [weakref.ref(problem), weakref.ref(problem._active_set)]
+            vehicle = replace(vehicle, wrench_weights=(1e3 + i,) * 6)
+            problem = problem.for_vehicle(vehicle)
+        assert [one() for one in gone] == [None] * 60
+    finally:
+        gc.enable()

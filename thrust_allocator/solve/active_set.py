@@ -1,6 +1,6 @@
 """A parametric active-set method that hands OSQP the optimum to start from."""
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -48,11 +48,10 @@ class ActiveSet:
         :param wrench_weights: diagonal of R, (m,), > 0.
         """
         self._matrix = np.ascontiguousarray(matrix)
-        self._per_multiplier = matrix / thrust_weights
-        self._compliance = np.diag(1.0 / wrench_weights)
-        self._response = lru_cache(maxsize=CACHED_SETS)(self._compute_response)
-        p = matrix.shape[1]
-        self._start(p)
+        # Of a function that knows nothing of self: a cycle would keep a replaced problem alive
+        self._response = lru_cache(maxsize=CACHED_SETS)(partial(
+            _response, self._matrix, matrix / thrust_weights, np.diag(1.0 / wrench_weights)))
+        self._start(matrix.shape[1])
 
     def _start(self, p: int) -> None:
         """Take the optimum of p thrusters for f = 0 and limits around 0 for that of last tick."""
@@ -116,23 +115,25 @@ class ActiveSet:
         return response.matrix.dot(
             wrench - response.columns.dot(limits.take(response.bounds))) - limits
 
-    def _compute_response(self, beyond: bytes) -> Response:
-        """
-        Return how the unbounded thrusts respond while some thrusters are held at a bound.
 
-        Each free thruster gives b_i^T lambda / q_i, where the multiplier lambda = R (f - B x) of
-        the wrench solves (R^-1 + B_F Q_F^-1 B_F^T) lambda = f - B_H x_H over the free thrusters F
-        and those held H: six equations at most, however many thrusters there are.
-        """
-        above_lower, above_upper = np.frombuffer(beyond, dtype=np.bool_).reshape(2, -1)
-        free = above_lower > above_upper
-        held = np.flatnonzero(~free)
-        system = self._compliance + (self._per_multiplier * free) @ self._matrix.T
-        at_bound = above_lower.view(np.int8) + above_upper.view(np.int8) - np.int8(1)
-        at_bound.flags.writeable = False  # shared by all ticks that end in this set
-        return Response(
-            np.linalg.solve(system, self._per_multiplier).T.copy(), self._matrix.take(held, axis=1),
-            held, held + len(free) * above_upper.take(held), at_bound)
+def _response(matrix: np.ndarray, per_multiplier: np.ndarray, compliance: np.ndarray,
+              beyond: bytes) -> Response:
+    """
+    Return how the unbounded thrusts respond while some thrusters are held at a bound.
+
+    Each free thruster gives b_i^T lambda / q_i, where the multiplier lambda = R (f - B x) of the
+    wrench solves (R^-1 + B_F Q_F^-1 B_F^T) lambda = f - B_H x_H over the free thrusters F and those
+    held H: six equations at most, however many thrusters there are.
+    """
+    above_lower, above_upper = np.frombuffer(beyond, dtype=np.bool_).reshape(2, -1)
+    free = above_lower > above_upper
+    held = np.flatnonzero(~free)
+    system = compliance + (per_multiplier * free) @ matrix.T
+    at_bound = above_lower.view(np.int8) + above_upper.view(np.int8) - np.int8(1)
+    at_bound.flags.writeable = False  # shared by all ticks that end in this set
+    return Response(
+        np.linalg.solve(system, per_multiplier).T.copy(), matrix.take(held, axis=1),
+        held, held + len(free) * above_upper.take(held), at_bound)
 
 
 def _differences(one: bytes, other: bytes) -> list[int]:

@@ -65,6 +65,19 @@ def start(mt2012):
 
 
 @pytest.fixture
+def launch():
+    """Return a function that starts Python as a process; what still runs at the end is killed."""
+    from support import processes
+
+    with ExitStack() as stack:
+        def start_process(*arguments, **environment):
+            process = processes.start(*arguments, **environment)
+            stack.callback(processes.end, process)
+            return process
+        yield start_process
+
+
+@pytest.fixture
 def stepped(start):
     """Return a function that starts the node in simulated time and frd axes on a SteppedPeer."""
     from support.stepped_peer import SteppedPeer

@@ -2,13 +2,13 @@
 
 import os
 import runpy
-import subprocess
 import sys
 from types import SimpleNamespace
 
 import pytest
 import setuptools
 from support.paths import ROOT
+from support.processes import run
 from thrust_allocator import __main__ as command
 
 
@@ -54,22 +54,18 @@ def test_other_names_are_refused(called, name, said, capsys):
 
 def test_nothing_is_imported_before_it_is_called():
     """The table alone needs neither ROS nor the mathematics."""
-    done = subprocess.run(
-        [sys.executable, '-c', 'import sys; from thrust_allocator import __main__\n'
-         'print([name for name in ("rclpy", "numpy", "osqp", "yaml") if name in sys.modules])'],
-        capture_output=True, text=True, cwd=ROOT, check=True)
-    assert done.stdout == '[]\n'
+    done = run('-c', 'import sys; from thrust_allocator import __main__\n'
+               'print([name for name in ("rclpy", "numpy", "osqp", "yaml") if name in sys.modules])')
+    assert done.stdout == '[]\n', done.stderr
 
 
 def test_an_interrupt_during_the_imports_ends_in_one_line(tmp_path):
     """SIGINT while a program is still being imported: one line and status 130, no traceback."""
     (tmp_path / 'slow.py').write_text(
         'import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(20)\n')
-    done = subprocess.run(
-        [sys.executable, '-c', 'from thrust_allocator import __main__ as command\n'
-         'command.COMMANDS["node"] = "slow"\ncommand.main(["thrust_allocator"])'],
-        capture_output=True, text=True, cwd=ROOT, timeout=30.0,
-        env={**os.environ, 'PYTHONPATH': str(tmp_path)})
+    done = run('-c', 'from thrust_allocator import __main__ as command\n'
+               'command.COMMANDS["node"] = "slow"\ncommand.main(["thrust_allocator"])',
+               PYTHONPATH=str(tmp_path))
     assert (done.returncode, done.stderr) == (130, 'thrust_allocator: interrupted\n')
 
 
@@ -89,7 +85,5 @@ def test_what_is_installed(monkeypatch):
 @pytest.mark.parametrize('name', ['demo', 'study'])
 def test_an_executable_starts_its_program(name):
     """One small file, linked by the names of the programs, starts what it is called."""
-    done = subprocess.run([sys.executable, ROOT / 'executables' / name, '--help'],
-                          capture_output=True, text=True, cwd=ROOT,
-                          env={**os.environ, 'PYTHONPATH': str(ROOT)})
+    done = run(ROOT / 'executables' / name, '--help', PYTHONPATH=str(ROOT))
     assert (done.returncode, done.stderr) == (0, '') and done.stdout.startswith(f'usage: {name} ')

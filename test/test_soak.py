@@ -4,14 +4,11 @@ import os
 from pathlib import Path
 import re
 import signal
-import subprocess
-import sys
 
 import pytest
-from support.paths import ROOT
+from support.processes import run, TIMEOUT
 
-SOAK = (sys.executable, '-m', 'thrust_allocator.soak')
-TIMEOUT = 60.0  # [s]
+SOAK = ('-m', 'thrust_allocator.soak')
 FIGURES = re.compile(
     r' +([0-9.]+) min: memory ([0-9.]+) MiB, growth since the first minute n/a; (\d+) setpoints, '
     r'worst gap ([0-9.]+) ms, \d+ above 50 ms; (\d+) ticks, \d+ late \([0-9.]+ %\), '
@@ -20,8 +17,7 @@ FIGURES = re.compile(
 
 def test_a_short_soak_prints_its_figures():
     """Three seconds give a line of sensible figures, a verdict and the exit status to it."""
-    done = subprocess.run([*SOAK, '--rate', '20', '--minutes', '0.05'], cwd=ROOT,
-                          capture_output=True, text=True, timeout=TIMEOUT)
+    done = run(*SOAK, '--rate', '20', '--minutes', '0.05')
     figures, verdict = done.stdout.splitlines()
     match = FIGURES.fullmatch(figures)
     assert match, figures
@@ -38,26 +34,23 @@ def test_a_short_soak_prints_its_figures():
     (('--minutes', '-1'), 'must be a number above 0'), (('--hours', '1'), 'unrecognized')])
 def test_mistakes_on_the_command_line(arguments, said):
     """A wrong option is refused before anything starts."""
-    done = subprocess.run([*SOAK, *arguments], cwd=ROOT, capture_output=True, text=True,
-                          timeout=TIMEOUT)
+    done = run(*SOAK, *arguments)
     assert (done.returncode, done.stdout) == (2, '')
     assert said in done.stderr and 'Traceback' not in done.stderr
 
 
 def test_a_node_that_cannot_start_fails_the_soak():
     """A rate that the node refuses ends the soak with the node's own line and status 1."""
-    done = subprocess.run([*SOAK, '--rate', '2000'], cwd=ROOT, capture_output=True, text=True,
-                          timeout=TIMEOUT)
+    done = run(*SOAK, '--rate', '2000')
     assert done.returncode == 1
     assert done.stderr.startswith('thrust_allocator: rate: is 2000.0, must be')
     assert done.stdout == ('soak: failed: the node was not heard; the node ended with '
                            'status 1\n')
 
 
-def test_an_interrupted_soak_leaves_no_node_behind():
+def test_an_interrupted_soak_leaves_no_node_behind(launch):
     """SIGINT ends the soak and its node, with a sentence and status 1."""
-    soak = subprocess.Popen([*SOAK, '--minutes', '0.05', '--rate', '20'], cwd=ROOT, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    soak = launch(*SOAK, '--minutes', '0.05', '--rate', '20')
     children = Path(f'/proc/{soak.pid}/task/{soak.pid}/children')
     while not children.read_text():
         assert soak.poll() is None, soak.communicate()

@@ -3,10 +3,10 @@
 import subprocess
 import sys
 
-import daqp
 import numpy as np
 import pytest
-from support.paths import ROOT
+from support.optimum import daqp_optimum
+from support.processes import run
 from thrust_allocator.benchmark.solvers import Measured, PEERS
 from thrust_allocator.benchmark.ticks import (
     mt2012, paper_sweep, random_vehicle, smooth_walk, switching_walk, Walk)
@@ -19,15 +19,9 @@ WALKS = {
 
 
 def exact(walk: Walk) -> np.ndarray:
-    """Return daqp's optimum of each tick, (n, p), with the slack eliminated."""
-    vehicle = walk.vehicle
-    matrix, weights = vehicle.configuration_matrix, np.array(vehicle.wrench_weights)
-    hessian = np.diag([t.weight for t in vehicle.thrusters]) + (matrix.T * weights) @ matrix
-    none, sense = np.zeros((0, len(hessian))), np.zeros(len(hessian), dtype=np.int32)
-    answers = [daqp.solve(hessian, -(matrix.T * weights) @ wrench, none, limits[1].copy(),
-                          limits[0].copy(), sense) for wrench, _, limits in walk.ticks]
-    assert {flag for _, _, flag, _ in answers} == {1}
-    return np.array([optimum for optimum, *_ in answers])
+    """Return daqp's optimum of each tick, (n, p)."""
+    return np.array([daqp_optimum(walk.vehicle, wrench, limits)
+                     for wrench, _, limits in walk.ticks])
 
 
 @pytest.mark.parametrize('name, count, iterations', [
@@ -84,15 +78,14 @@ def test_a_peer_that_is_not_installed_is_reported(monkeypatch):
     assert row.split('|')[2].strip() == 'missing'
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess:
+def command(*arguments: str) -> subprocess.CompletedProcess:
     """Run the benchmark's command as a stranger would."""
-    return subprocess.run([sys.executable, '-m', 'thrust_allocator.benchmark', *arguments],
-                          cwd=ROOT, capture_output=True, text=True, timeout=60.0)
+    return run('-m', 'thrust_allocator.benchmark', *arguments)
 
 
 def test_command_prints_a_row_for_every_peer():
     """A quick run of the solvers: the machine, and one row per peer and sequence of ticks."""
-    done = run('--quick', 'solvers')
+    done = command('--quick', 'solvers')
     assert (done.returncode, done.stderr) == (0, '')
     assert 'Python' in done.stdout and 'numpy' in done.stdout
     for peer in PEERS:
@@ -106,6 +99,6 @@ def test_command_prints_a_row_for_every_peer():
     (('--plot', 'x.png'), 'x.png must end in .svg')])
 def test_mistakes_on_the_command_line(arguments, named):
     """A mistake ends in one plain sentence, before anything is measured."""
-    done = run(*arguments)
+    done = command(*arguments)
     assert (done.returncode, done.stdout) == (2, '')
     assert named in done.stderr and 'Traceback' not in done.stderr

@@ -2,13 +2,11 @@
 
 import copy
 import math
-import subprocess
-import sys
 
 from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
-from support.paths import ROOT
+from support.processes import NODE, TIMEOUT
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.table import read_parameters
 from thrust_allocator.parameters.types import ParameterError
@@ -17,7 +15,6 @@ from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import AllocationProblem
 import yaml
 
-TIMEOUT = 30.0  # [s]
 TEXT = default_parameter_file().read_text(encoding='utf-8')
 DOCUMENT = yaml.safe_load(TEXT)
 PARAMETERS = DOCUMENT['/**']['ros__parameters']
@@ -173,28 +170,21 @@ NASTY = {
 }
 
 
-def test_nasty_files_through_the_process(tmp_path):
+def test_nasty_files_through_the_process(launch, tmp_path):
     """The node as a process runs such a file, or ends with one line and status 1."""
     processes = {}
-    try:
-        for name, content in NASTY.items():
-            file = tmp_path / f'{name}.yaml'
-            file.write_bytes(content)
-            processes[name] = subprocess.Popen(
-                [sys.executable, '-m', 'thrust_allocator', '--ros-args', '--params-file', file],
-                cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        for name, process in processes.items():
-            said = []
-            while line := process.stderr.readline():
-                said.append(line)
-                if 'no wrench: zero setpoints' in line:  # its first tick: it runs
-                    process.terminate()
-            stdout = process.communicate(timeout=TIMEOUT)[0]
-            runs = any('no wrench: zero setpoints' in line for line in said)
-            assert (process.returncode, stdout) == (0 if runs else 1, ''), (name, said)
-            if not runs:
-                assert len(said) == 1 and said[0].startswith('thrust_allocator: '), (name, said)
-    finally:
-        for process in processes.values():
-            process.kill()
-            process.communicate()
+    for name, content in NASTY.items():
+        file = tmp_path / f'{name}.yaml'
+        file.write_bytes(content)
+        processes[name] = launch(*NODE, '--ros-args', '--params-file', file)
+    for name, process in processes.items():
+        said = []
+        while line := process.stderr.readline():
+            said.append(line)
+            if 'no wrench: zero setpoints' in line:  # its first tick: it runs
+                process.terminate()
+        stdout = process.communicate(timeout=TIMEOUT)[0]
+        runs = any('no wrench: zero setpoints' in line for line in said)
+        assert (process.returncode, stdout) == (0 if runs else 1, ''), (name, said)
+        if not runs:
+            assert len(said) == 1 and said[0].startswith('thrust_allocator: '), (name, said)

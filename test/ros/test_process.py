@@ -1,10 +1,7 @@
 """The node as a process of its own: start, mistakes in its parameters, and how it stops."""
 
-import os
 from pathlib import Path
 import signal
-import subprocess
-import sys
 import uuid
 
 import numpy as np
@@ -12,11 +9,8 @@ import pytest
 from rcl_interfaces.msg import ParameterType
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import ReliabilityPolicy
-from support.paths import ROOT
-from support.peer import cruise, Peer, ros_context
-
-DOMAIN = 1 + os.getpid() % 100
-TIMEOUT = 30.0  # [s]
+from support.peer import cruise, Peer
+from support.processes import context_among_processes, NODE, TIMEOUT
 
 
 @pytest.fixture
@@ -26,31 +20,16 @@ def namespace():
 
 
 @pytest.fixture
-def launch(namespace):
-    """Return a function that starts the node as a process; what still runs is killed."""
-    processes = []
-    environment = {**os.environ, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-                   'ROS_DOMAIN_ID': str(DOMAIN)}
-
-    def start(*arguments):
-        processes.append(subprocess.Popen(
-            [sys.executable, '-m', 'thrust_allocator', '--ros-args',
-             '-r', f'__ns:={namespace}', *map(str, arguments)],
-            cwd=ROOT, env=environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+def launch_node(launch, namespace):
+    """Return a function that starts the node as a process in the namespace."""
+    return lambda *arguments: launch(
+        *NODE, '--ros-args', '-r', f'__ns:={namespace}', *arguments)
 
 
 @pytest.fixture
-def peer(namespace, monkeypatch):
+def peer(namespace):
     """Return a peer of the process, in this process and heard on this machine only."""
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    with ros_context('-r', f'__ns:={namespace}', domain_id=DOMAIN) as context:
+    with context_among_processes('-r', f'__ns:={namespace}') as context:
         peer = Peer(context)
         yield peer
         peer.close()
@@ -76,9 +55,9 @@ def stop(process, number=signal.SIGTERM):
     return stderr.splitlines()
 
 
-def test_without_a_parameter_file(launch, peer, mt2012):
+def test_without_a_parameter_file(launch_node, peer, mt2012):
     """MT-2012 runs from the package's own file, allocates, and one WARN line names that file."""
-    process = launch()
+    process = launch_node()
     wait_until_allocating(peer, process)
     tick = peer.settle(*cruise(0.9, side=-1.0))
     np.testing.assert_allclose(tick['thruster_setpoints'], [-35.34, 8.77, 52.88, 8.77, -4.20],
@@ -93,12 +72,12 @@ def test_without_a_parameter_file(launch, peer, mt2012):
     assert all(line.startswith(('[WARN]', '[INFO]')) for line in lines)
 
 
-def test_with_a_parameter_file(launch, peer, variant):
+def test_with_a_parameter_file(launch_node, peer, variant):
     """The given vehicle runs, nothing of MT-2012 is merged in, and no WARN speaks of it."""
     path = variant({'thruster_names': ['thrust'], 'thrusters': {'thrust': {
         'model': 'constant', 'position': [0.0, 0.0, 0.0], 'direction': [1.0, 0.0, 0.0],
         'bollard_thrust': [-10.0, 20.0]}}})
-    process = launch('--params-file', path)
+    process = launch_node('--params-file', path)
     wait_until_allocating(peer, process)
     tick = peer.settle((50.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     assert tick['thrust_limits'].tolist() == [-10.0, 20.0]
@@ -107,11 +86,11 @@ def test_with_a_parameter_file(launch, peer, variant):
 
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
-def test_zeros_come_last(launch, peer, number):
+def test_zeros_come_last(launch_node, peer, number):
     """After a signal in full action each subscriber has zeros last, and the exit status is 0."""
     impatient = Peer(peer.context, reliability=ReliabilityPolicy.BEST_EFFORT, beside=peer,
                      name='impatient')
-    process = launch('-p', 'wrench_timeout:=600.0')
+    process = launch_node('-p', 'wrench_timeout:=600.0')
     wait_until_allocating(peer, process, impatient)
     process.send_signal(number)
     peer.wait_until(lambda: process.poll() is not None, 'the end of the process', TIMEOUT)
@@ -126,9 +105,9 @@ def test_zeros_come_last(launch, peer, number):
     impatient.destroy_node()
 
 
-def refused(launch, *arguments):
+def refused(launch_node, *arguments):
     """Return the only line on stderr of a process that ends with status 1 at once."""
-    process = launch(*arguments)
+    process = launch_node(*arguments)
     stdout, stderr = process.communicate(timeout=TIMEOUT)
     assert (process.returncode, stdout, stderr.count('\n')) == (1, '', 1), stderr
     return stderr
@@ -142,38 +121,38 @@ def refused(launch, *arguments):
     ({'thrusters.up.wieght': 1.0}, 'thrusters.up.wieght: is no parameter here; did you mean '
                                    'thrusters.up.weight?'),
     ({'rate': None}, 'rate: is None, must be')])
-def test_mistakes_in_a_parameter_file(launch, variant, changes, named):
+def test_mistakes_in_a_parameter_file(launch_node, variant, changes, named):
     """A mistake ends in one line that names the parameter, what it is and what it must be."""
-    assert named in refused(launch, '--params-file', variant(changes))
+    assert named in refused(launch_node, '--params-file', variant(changes))
 
 
-def test_a_wrong_top_key(launch, variant, namespace):
+def test_a_wrong_top_key(launch_node, variant, namespace):
     """A file for another node ends in one line that asks about its top key."""
-    line = refused(launch, '--params-file', variant({}, top_key='/other'))
+    line = refused(launch_node, '--params-file', variant({}, top_key='/other'))
     assert 'thruster_names: is missing' in line and 'top key' in line
     assert f'{namespace}/thrust_allocator' in line
 
 
 @pytest.mark.parametrize('content, said', [
     (None, 'cannot be read'), ('{', 'is not valid YAML'), ('- 1\n', 'is no map')])
-def test_no_parameter_file_at_all(launch, tmp_path, content, said):
+def test_no_parameter_file_at_all(launch_node, tmp_path, content, said):
     """A file that is missing or no parameter file ends in one line that names it."""
     path = tmp_path / 'broken.yaml'
     if content is not None:
         path.write_text(content, encoding='utf-8')
-    line = refused(launch, '--params-file', path)
+    line = refused(launch_node, '--params-file', path)
     assert str(path) in line and said in line
 
 
 @pytest.mark.parametrize('value', ['abc', '-1', 'null', '2020-01-01', str(10**30)])
-def test_a_wrong_value_on_the_command_line(launch, value):
+def test_a_wrong_value_on_the_command_line(launch_node, value):
     """A value that ROS itself would drop, for its type, ends in one line that names it."""
-    assert 'rate: is ' in refused(launch, '-p', f'rate:={value}')
+    assert 'rate: is ' in refused(launch_node, '-p', f'rate:={value}')
 
 
-def test_a_whole_number_on_the_command_line(launch, peer):
+def test_a_whole_number_on_the_command_line(launch_node, peer):
     """A whole number where the default file has a real one is in effect, as a real one."""
-    process = launch('-p', 'rate:=20')
+    process = launch_node('-p', 'rate:=20')
     wait_until_allocating(peer, process)
     client = AsyncParameterClient(peer, 'thrust_allocator')
     peer.wait_until(client.services_are_ready, 'the services for parameters', TIMEOUT)

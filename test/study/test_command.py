@@ -1,136 +1,13 @@
-"""The study's command line, end to end."""
+"""The study's command line: what its options do, and what a mistake in them is told."""
 
-import csv
 import re
-import subprocess
 import sys
 
-import numpy as np
 import pytest
 from support.paths import CONFIG
-from support.vehicles import mt2012 as paper_vehicle
-from thrust_allocator.study import grid, report
-from thrust_allocator.study.__main__ import main
-from thrust_allocator.study.authority import HELD
-from thrust_allocator.study.grid import Case, evaluate
-from thrust_allocator.study.manoeuvre import Manoeuvre
-from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS
+from support.study import rows, run, SHORT
 
-PICTURES = ('allocation_against_speed', 'worth', 'authority', 'directions')
-SPEEDS = [0.0, 0.9, 1.8]
 FILES = sorted(CONFIG.glob('*.yaml'))
-SHORT = ['--speeds', '0:1.8:3']
-
-
-def run(*args):
-    """Run the study in this process and return its exit status."""
-    return main(['study', *map(str, args)])
-
-
-def rows(path):
-    """Return the rows of a CSV file as a list of dicts."""
-    with path.open(encoding='utf-8', newline='') as file:
-        return list(csv.DictReader(file))
-
-
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Leave out the pictures, which take most of the time of a short study."""
-    monkeypatch.setattr(report.Drawings, 'draw', lambda self, jobs: None)
-
-
-@pytest.fixture(scope='module')
-def study(tmp_path_factory):
-    """Return the folder of a short study of MT-2012."""
-    folder = tmp_path_factory.mktemp('study') / 'not' / 'there yet'
-    assert run('--output', folder, *SHORT) == 0
-    return folder
-
-
-@pytest.fixture(scope='module')
-def outcome():
-    """Return what the functions say of the same study."""
-    return evaluate(Case('mt2012', paper_vehicle(), (), 0.0), Manoeuvre(), SPEEDS)
-
-
-def test_every_picture_has_its_files(study):
-    """PNG, SVG and CSV beside each other, and no more than the report and the whole grid."""
-    expected = {f'{name}.{suffix}' for name in PICTURES for suffix in ('png', 'svg', 'csv')}
-    assert {file.name for file in study.iterdir()} == expected | {'report.md', 'grid.csv'}
-    for name in PICTURES:
-        assert (study / f'{name}.png').read_bytes().startswith(b'\x89PNG')
-        assert '</svg>' in (study / f'{name}.svg').read_text('utf-8')
-
-
-def test_the_report_shows_every_picture_and_says_how_it_was_made(study):
-    """Every link leads to a file; the command stands at the end."""
-    text = (study / 'report.md').read_text('utf-8')
-    links = re.findall(r'\]\(([^)]+)\)', text)
-    assert {link for link in links if link.endswith('.png')} == {f'{n}.png' for n in PICTURES}
-    assert all((study / link).is_file() for link in links)
-    assert 'ros2 run thrust_allocator study --output' in text
-    assert '18.857' in text and '0.232' in text and '29.556' in text
-
-
-def test_table_of_allocation_equals_the_function(study, outcome):
-    """Thrusts and bounds stand in the CSV to the last bit."""
-    table = rows(study / 'allocation_against_speed.csv')
-    assert [float(row['speed [m/s]']) for row in table] == SPEEDS
-    for i, row in enumerate(table):
-        assert float(row['tunnel thrust [N]']) == outcome.allocation.thrusts[i, 2, 4]
-        assert float(row['up upper [N]']) == outcome.allocation.limits[i, 1, 2]
-
-
-def test_table_of_worth_equals_the_function(study, outcome):
-    """So do commanded and delivered wrench, for each driver and allocator."""
-    table = iter(rows(study / 'worth.csv'))
-    for d, driver in enumerate(DRIVERS):
-        for a, allocator in enumerate(ALLOCATORS):
-            for i in range(len(SPEEDS)):
-                row = next(table)
-                assert (row['driver'], row['allocator']) == (driver, allocator)
-                assert float(row['delivered pitch [N*m]']) \
-                    == outcome.allocation.delivered[i, a, d, 4]
-                assert float(row['commanded surge [N]']) == outcome.allocation.commands[i, 0]
-
-
-def test_table_of_authority_equals_the_function(study, outcome):
-    """So does authority, intact and for each failure; what is not controlled is empty."""
-    table = rows(study / 'authority.csv')
-    assert list(dict.fromkeys(row['failed'] for row in table)) \
-        == ['', 'down', 'left', 'up', 'right', 'tunnel']
-    found = iter(table)
-    for k, kind in enumerate(HELD):
-        for i in range(len(SPEEDS)):
-            row = next(found)
-            assert row['holding'] == kind and row['smallest sway [N]'] == ''
-            assert float(row['largest pitch [N*m]']) == outcome.authority[i, k, 4, 1]
-
-
-@pytest.fixture(scope='module')
-def process(tmp_path_factory):
-    """Run the same study as a process of its own; return what it said, and its folder."""
-    folder = tmp_path_factory.mktemp('process')
-    return subprocess.run(
-        [sys.executable, '-m', 'thrust_allocator.study', '--output', folder, *SHORT],
-        capture_output=True, text=True), folder
-
-
-def test_three_lines_end_it(process):
-    """Three lines on stdout, each finding with its driver, and nothing on stderr."""
-    done, _ = process
-    assert (done.returncode, done.stderr) == (0, '')
-    lines = done.stdout.splitlines()
-    assert len(lines) == 3
-    assert lines[0].startswith('With a driver that delivers the thrust asked for')
-    assert 'Bollard curve' in lines[1] and lines[2].startswith('Authority: 50 N*m of pitch')
-
-
-def test_the_same_command_writes_the_same_bytes(study, process):
-    """Pictures carry no date and no random names."""
-    for file in study.iterdir():
-        if file.name != 'report.md':  # which holds the path
-            assert file.read_bytes() == (process[1] / file.name).read_bytes(), file.name
 
 
 def test_options_reach_the_numbers(undrawn, tmp_path):
@@ -160,20 +37,6 @@ def test_every_vehicle_of_the_package(undrawn, file, tmp_path):
     first = rows(tmp_path / 'authority.csv')[0]
     assert 0.0 < float(rows(tmp_path / 'grid.csv')[0]['commanded pitch [N*m]']) \
         <= float(first['largest pitch [N*m]'])
-
-
-def test_a_vehicle_of_one_thruster_that_only_pushes(tmp_path):
-    """The smallest vehicle has its pictures, too: no failure spared, no sense of thrust assumed."""
-    file = tmp_path / 'one.yaml'
-    file.write_text(
-        '/**:\n  ros__parameters:\n    thruster_names: [t]\n'
-        '    wrench_weights: {sway: 0.0, heave: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0}\n'
-        '    thrusters: {t: {model: constant, position: [0.0, 0.0, 0.0], '
-        'direction: [1.0, 0.0, 0.0], bollard_thrust: [0.0, 10.0]}}\n')
-    assert run(file, '--output', tmp_path / 'out', *SHORT) == 0
-    table = rows(tmp_path / 'out' / 'authority.csv')
-    assert {(row['failed'], row['largest surge [N]']) for row in table} \
-        == {('', '10.0'), ('t', '0.0')}
 
 
 def test_several_files_are_candidate_layouts(undrawn, variant, mt2012, tmp_path):
@@ -265,82 +128,3 @@ def test_what_is_not_installed_is_named(module, args, extra, tmp_path, capsys, m
     assert error.count('\n') == 1
     assert f"is not installed: pip install '.[{extra}]'" in error
     assert not (tmp_path / 'out').exists()
-
-
-def test_a_cluster_that_is_not_there(tmp_path, capsys, monkeypatch):
-    """An address where nobody answers, or that is none, ends in one line."""
-    monkeypatch.setattr(grid, 'CONNECT_TIMEOUT', 0.3)
-    for address in ('tcp://127.0.0.1:1', 'nonsense://x'):
-        assert run('--output', tmp_path / 'out', *SHORT, '--dask', address) == 1
-        error = capsys.readouterr().err
-        assert error.startswith(f'study: --dask {address}: ') and error.count('\n') == 1
-
-
-@pytest.fixture(scope='module')
-def cluster():
-    """Return a local Dask cluster of two worker processes, on the loopback interface alone."""
-    from distributed import LocalCluster  # of extra `test`; its absence is no reason to skip
-
-    with LocalCluster(n_workers=2, threads_per_worker=1, host='127.0.0.1',
-                      dashboard_address=None) as cluster:
-        yield cluster
-
-
-@pytest.fixture(scope='module')
-def grid_of_one_core(tmp_path_factory):
-    """Return the options of a grid, and all its numbers from one process, as bytes."""
-    folder = tmp_path_factory.mktemp('one_core')
-    options = ['--speeds', '0:1.8:31', '--headings', '0,20']
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report.Drawings, 'draw', lambda self, jobs: None)
-        assert run('--output', folder, *options) == 0
-    return options, (folder / 'grid.csv').read_bytes()
-
-
-def test_the_same_numbers_with_two_jobs(undrawn, grid_of_one_core, tmp_path):
-    """Two processes give the same grid to the last bit."""
-    options, expected = grid_of_one_core
-    assert run('--output', tmp_path, *options, '--jobs', 2) == 0
-    assert (tmp_path / 'grid.csv').read_bytes() == expected
-
-
-def test_the_same_numbers_on_a_cluster(undrawn, grid_of_one_core, cluster, tmp_path):
-    """A Dask cluster of two processes gives them, too."""
-    options, expected = grid_of_one_core
-    assert run('--output', tmp_path, *options, '--dask', cluster.scheduler_address) == 0
-    assert (tmp_path / 'grid.csv').read_bytes() == expected
-
-
-def test_a_failure_on_the_cluster_ends_in_one_line(undrawn, cluster, tmp_path, capsys, monkeypatch):
-    """Whatever a worker raises is told by its kind, without a traceback."""
-    monkeypatch.setattr(grid, 'evaluate', _no_such_module)
-    assert run('--output', tmp_path / 'out', *SHORT, '--dask', cluster.scheduler_address) == 1
-    error = capsys.readouterr().err
-    assert error == f'study: --dask {cluster.scheduler_address}: ZeroDivisionError: at sea\n'
-
-
-def _no_such_module(case, manoeuvre, speeds):
-    raise ZeroDivisionError('at sea')
-
-
-def test_long_runs_show_progress(undrawn, tmp_path, capsys, monkeypatch):
-    """Points done and the time left go to stderr."""
-    from thrust_allocator.study import progress
-
-    monkeypatch.setattr(progress, 'SILENCE', 0.0)
-    monkeypatch.setattr(progress, 'INTERVAL', {True: 0.0, False: 0.0})
-    assert run('--output', tmp_path, '--speeds', '0:1:30', '--failed', 'up') == 0
-    notes = capsys.readouterr().err.splitlines()
-    assert len(notes) == 10 and notes[-1].startswith('study: 150 of 150 points, ')
-    assert np.all(['s to go' in note for note in notes])
-
-
-def test_it_needs_no_ros():
-    """The command can be imported and asked for help where no ROS is installed."""
-    hidden = ('rclpy', 'ament_index_python', 'geometry_msgs', 'nav_msgs', 'std_msgs')
-    program = ('import sys\n'
-               f'sys.modules.update(dict.fromkeys({hidden}))\n'
-               'from thrust_allocator.study.__main__ import main\n'
-               "main(['study', '--help'])\n")
-    done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True)
-    assert done.returncode == 0 and '--output DIR' in done.stdout, done.stderr

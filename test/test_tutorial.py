@@ -9,9 +9,9 @@ import pytest
 from rclpy.parameter import Parameter
 from support.paths import ROOT
 from thrust_allocator.parameters.file import read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import load_vehicle
+from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.physics.vehicle import Vehicle
 import yaml
 
 TUTORIAL = (ROOT / 'doc/tutorial.md').read_text('utf-8')
@@ -62,7 +62,7 @@ def test_the_described_vehicle(start, my_vehicle):
         assert_allclose(one.position, position, atol=1e-12)
         assert_allclose(one.direction, direction, atol=1e-5)
         assert one.bollard_thrust == (-39.9, 51.4)
-        assert_allclose(one.loss.speed_loss, [12.1, 15.6], atol=0.05)  # as by the tow test
+        assert_allclose(one.model.speed_loss, [12.1, 15.6], atol=0.05)  # as by the tow test
     assert_allclose(np.array([4.069, 5.245]) * 9.807, [39.9, 51.4], atol=0.05)
     assert node.vehicle.warnings() == []
     assert not peer.settle([40.0, 0.0, 0.0, 0.0, 0.0, 0.0])['thruster_setpoints'].any()
@@ -71,7 +71,7 @@ def test_the_described_vehicle(start, my_vehicle):
 
 def test_the_package_has_the_same_vehicle(my_vehicle):
     """Drawn or taken from config/bluerov2_heavy.yaml: thrusters and weights are equal."""
-    one, other = (Vehicle.from_parameters(read_parameters(read_parameter_file(path)))
+    one, other = (load_vehicle(path)
                   for path in (my_vehicle, ROOT / 'config/bluerov2_heavy.yaml'))
     assert one == other
 

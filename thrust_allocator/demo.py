@@ -13,11 +13,11 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
+from thrust_allocator.parameters.file import default_parameter_file, NODE_NAME
 from thrust_allocator.physics.frames import DOFS, frd_signs
 from thrust_allocator.ros.messages import wrench_components
 from thrust_allocator.ros.node import INPUT, ThrustAllocator
 from thrust_allocator.ros.outputs import OUTPUT
-from thrust_allocator.parameters.file import default_parameter_file, NODE_NAME
 
 NAMESPACE = f'/{NODE_NAME}_demo'
 SPEEDS = (0.3, 0.5, 0.7, 0.9, 1.2, 1.5, 1.8)  # [m/s]

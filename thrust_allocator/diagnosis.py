@@ -5,9 +5,10 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from thrust_allocator.solve.problem import Allocation
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.solve.problem import Allocation
+from thrust_allocator.tick import Tick
 
 SLACK = 0.5  # [N, N*m], with SLACK_SHARE of the command: what may be unallocated without a word
 SLACK_SHARE = 0.01
@@ -42,12 +43,32 @@ class Findings:
         elif kind in self._present:
             self._logger.info(f'no longer: {self._present.pop(kind)[1]}')
 
+    def note_tick(self, tick: Tick) -> None:
+        """Note what a tick has found missing, and a solver that does not vouch for its result."""
+        motion = tick.motion
+        self.note('current', motion.current_ignored
+                  and f'current ignored: {motion.current_ignored}')
+        self.note('odometry', motion.missing and (
+            f'no odometry {motion.missing}: using fallback_velocity'
+            + ('' if motion.twist is None else ' where it is tighter')))
+        self.note('wrench', 'no wrench: zero setpoints' if tick.wrench is None else '')
+        self.note('enable', '' if tick.enabled else 'disabled: zero setpoints')
+        self.note('solver', trouble(tick.allocation), Level.ERROR)
+
     def overall(self) -> tuple[Level, str]:
         """Return the worst level, and all findings in one line, the worst first."""
         if not self._present:
             return Level.OK, 'allocating'
         worst_first = sorted(self._present.values(), key=lambda finding: -finding[0])
         return worst_first[0][0], '; '.join(text for _, text in worst_first)
+
+
+def trouble(allocation: Allocation | None) -> str:
+    """Return what is wrong with a result that OSQP does not vouch for, or ''."""
+    if allocation is None or allocation.solved:
+        return ''
+    return (f'OSQP reports {allocation.status}: setpoints inside the limits, but perhaps not the '
+            'best')
 
 
 def shortfall(allocation: Allocation, vehicle: Vehicle) -> str:
@@ -74,14 +95,22 @@ def shortfall(allocation: Allocation, vehicle: Vehicle) -> str:
 
 
 @dataclass
-class Period:
-    """The ticks since the last report."""
+class Tally:
+    """What is counted of the ticks from one report to the next."""
 
     times: list[float] = field(default_factory=list)  # each tick's duration [s]
     iterations: list[int] = field(default_factory=list)  # OSQP's, of each solve
     late: int = 0  # ticks
     newest: Allocation | None = None
     trouble: str = ''  # the newest failure of the solver, though it may be over
+
+    def count(self, tick: Tick, seconds: float) -> None:
+        """Count a tick that took so long [s]."""
+        self.times.append(seconds)
+        if tick.allocation is not None:
+            self.newest = tick.allocation
+            self.iterations.append(tick.allocation.iterations)
+            self.trouble = trouble(tick.allocation) or self.trouble
 
     def figures(self) -> dict[str, str]:
         """Return mean and worst of what was counted, as text by key."""

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +10,17 @@ LARGEST_WRENCH = 1e6  # [N, N*m]; beyond it a message is taken for broken
 LARGEST_VELOCITY = 50.0  # [m/s, rad/s]
 AHEAD = 100_000_000  # [ns] by which a stamp may be ahead of the clock
 UNIT = 1e-3  # how far from 1 the norm of a unit quaternion may be
+
+
+NEVER = -2**62  # [ns], a time longer ago than any time-out
+
+
+class Timeouts(NamedTuple):
+    """Ages beyond which what was received last counts no more [ns]."""
+
+    wrench: int
+    velocity: int  # 0: no velocity is expected
+    current: int
 
 
 @dataclass
@@ -24,6 +36,15 @@ class Received:
     def age(self, now: int) -> int:
         """Return the larger of the time since receipt and the age it had then [ns]."""
         return max(now - self.time, self.old)
+
+
+class Motion(NamedTuple):
+    """What is known of the vehicle's velocity through the water."""
+
+    twist: np.ndarray | None  # (6,), axes of the messages [m/s, rad/s]; None: never received
+    stale: bool  # whether it is too old to be relied on
+    missing: str  # since when one is missing that is expected, in words, or ''
+    current_ignored: str  # why a current that was received does not count, or ''
 
 
 class Inputs:
@@ -75,30 +96,44 @@ class Inputs:
             if received is not None:
                 received.time = NEVER
 
-    def velocity_through_water(self, now: int, current_timeout: int) -> tuple[np.ndarray, str]:
-        """
-        Return the velocity of the last odometry, less the current where one is known.
+    def live_wrench(self, now: int, timeouts: Timeouts) -> np.ndarray | None:
+        """Return the commanded wrench, (6,) [N, N*m], or None if none counts (any more)."""
+        live = self.wrench is not None and self.wrench.age(now) <= timeouts.wrench
+        return self.wrench.values if live else None
 
-        :param current_timeout: age at which a current counts no more [ns].
-        :return: (6,) in body axes [m/s, rad/s], zero if there was no odometry, and why a current
-            that was received is ignored, or ''.
-        """
+    def motion(self, now: int, timeouts: Timeouts) -> Motion:
+        """Return the velocity of the last odometry, less the current where one is known."""
+        stale = self.velocity is None or self.velocity.age(now) > timeouts.velocity
+        missing = self._missing_since(now) if stale and timeouts.velocity else ''
         if self.velocity is None:
-            return np.zeros(6), ''
-        twist = self.velocity.values
+            return Motion(None, stale, missing, '')
         if self.current is None:
-            return twist, ''
-        if now - self.current.time > current_timeout:
-            return twist, 'none came for too long'
+            return Motion(self.velocity.values, stale, missing, '')
+        ignored = self._why_no_current(now, timeouts)
+        return Motion(self.velocity.values if ignored else self._less_current(), stale, missing,
+                      ignored)
+
+    def _missing_since(self, now: int) -> str:
+        if self.velocity is None:
+            return 'yet'
+        if self.velocity.time == NEVER:
+            return 'since the clock went back'
+        return f'for {age_in_seconds(self.velocity, now)} s'
+
+    def _why_no_current(self, now: int, timeouts: Timeouts) -> str:
+        if self.current.age(now) > timeouts.current:
+            return 'none came for too long'
         if self.current.frame != self.velocity.frame:
-            return twist, (f"its frame is '{self.current.frame}', not the parent frame of the "
-                           f"odometry, '{self.velocity.frame}'")
-        orientation = self.velocity.orientation
-        if not abs(np.linalg.norm(orientation) - 1.0) <= UNIT:  # not for NaN either
-            return twist, 'the orientation in the odometry is no unit quaternion'
-        through_water = twist.copy()
-        through_water[:3] -= _into_body(self.current.values, orientation)
-        return through_water, ''
+            return (f"its frame is '{self.current.frame}', not the parent frame of the odometry, "
+                    f"'{self.velocity.frame}'")
+        if not abs(np.linalg.norm(self.velocity.orientation) - 1.0) <= UNIT:  # not for NaN either
+            return 'the orientation in the odometry is no unit quaternion'
+        return ''
+
+    def _less_current(self) -> np.ndarray:
+        through_water = self.velocity.values.copy()
+        through_water[:3] -= _into_body(self.current.values, self.velocity.orientation)
+        return through_water
 
     def _is_sound(self, topic: str, values: np.ndarray, largest: float) -> bool:
         if not np.isfinite(values).all():
@@ -110,7 +145,10 @@ class Inputs:
         return False
 
 
-NEVER = -2**62  # [ns], a time longer ago than any time-out
+def age_in_seconds(received: Received | None, now: int) -> str:
+    """Return the age of what was received last, as text [s], or 'none'."""
+    return 'none' if received is None or received.time == NEVER else (
+        f'{received.age(now) * 1e-9:.1f}')
 
 
 def _into_body(vector: np.ndarray, orientation: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.optimum import daqp_optimum
 from support.processes import run
-from thrust_allocator.benchmark.solvers import Measured, PEERS
+from thrust_allocator.benchmark.solvers import Measured, RIVALS
 from thrust_allocator.benchmark.ticks import (
     mt2012, paper_sweep, random_vehicle, smooth_walk, switching_walk, Walk)
 from thrust_allocator.solve.problem import AllocationProblem
@@ -73,7 +73,7 @@ def test_a_peer_that_is_not_installed_is_reported(monkeypatch):
     """The table has a row for every peer, and says of one that it is missing."""
     monkeypatch.setitem(sys.modules, 'quadprog', None)
     rows = Measured(paper_sweep(20), repeats=1).table().splitlines()[2:]
-    assert [row.split('|')[1].strip() for row in rows] == [peer.name for peer in PEERS]
+    assert [row.split('|')[1].strip() for row in rows] == [peer.name for peer in RIVALS]
     row, = (row for row in rows if row.startswith('| quadprog '))
     assert row.split('|')[2].strip() == 'missing'
 
@@ -88,7 +88,7 @@ def test_command_prints_a_row_for_every_peer():
     done = command('--quick', 'solvers')
     assert (done.returncode, done.stderr) == (0, '')
     assert 'Python' in done.stdout and 'numpy' in done.stdout
-    for peer in PEERS:
+    for peer in RIVALS:
         assert done.stdout.count(f'\n| {peer.name} ') == 3
 
 

@@ -7,11 +7,10 @@ import pytest
 from scipy.optimize import linprog
 from support.paths import CONFIG
 from thrust_allocator.parameters.file import read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import describe, load_vehicle
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.frames import DOFS
-from thrust_allocator.physics.models.tunnel import TunnelLoss
-from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.physics.models import Tunnel
 from thrust_allocator.solve.problem import AllocationProblem
 
 FILES = sorted(file.stem for file in CONFIG.glob('*.yaml'))
@@ -52,7 +51,7 @@ REACH = [
 
 def load(name):
     """Return a vehicle of config/."""
-    return Vehicle.from_parameters(read_parameters(read_parameter_file(CONFIG / f'{name}.yaml')))
+    return load_vehicle(CONFIG / f'{name}.yaml')
 
 
 def reach(vehicle, dof, sign):
@@ -76,12 +75,10 @@ def test_every_vehicle_is_checked():
 @pytest.mark.parametrize('name', FILES)
 def test_a_file_is_a_sound_vehicle(name):
     """Nothing in the file is ignored, every controlled DOF has thrusters of its own."""
-    parameters = read_parameters(read_parameter_file(CONFIG / f'{name}.yaml'))
-    assert parameters.warnings == ()
-    vehicle = Vehicle.from_parameters(parameters)
-    assert vehicle.warnings() == []
-    for thruster in vehicle.thrusters:  # written to five digits
-        given = parameters.values[f'thrusters.{thruster.name}.direction']
+    description = describe(read_parameter_file(CONFIG / f'{name}.yaml'))
+    assert description.warnings == []
+    for thruster in description.vehicle.thrusters:  # written to five digits
+        given = description.parameters.values[f'thrusters.{thruster.name}.direction']
         assert np.linalg.norm(given) == pytest.approx(1.0, abs=1e-5)
 
 
@@ -161,7 +158,7 @@ def test_limits_at_cruise(name, speed):
     assert (limits > 0.02 * bollard).all()
     for i, thruster in enumerate(vehicle.thrusters):
         ahead = thruster.direction[0]
-        if isinstance(thruster.loss, TunnelLoss):
+        if isinstance(thruster.model, Tunnel):
             assert (limits[:, i] < bollard[:, i]).all()
         elif ahead:
             driving = 1 if ahead > 0.0 else 0
@@ -175,7 +172,7 @@ def test_delphin2_loses_what_its_software_says():
     vehicle = load('delphin2')
     limits = ThrustBounds(vehicle)(np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
     assert limits[1, :4] == pytest.approx(19.3 * exp(-0.35), rel=5e-3)
-    assert all(0.3 <= thruster.loss.decay <= 4.0 for thruster in vehicle.thrusters[:4])
+    assert all(0.3 <= thruster.model.decay <= 4.0 for thruster in vehicle.thrusters[:4])
 
     revolutions, diameter = 4.645, 0.305
     advance = (1.0 - 0.36) * 1.0 / (revolutions * diameter)
@@ -190,6 +187,6 @@ def test_a_t200_is_that_of_the_maker():
     for thruster in load('bluerov2_heavy').thrusters:
         assert thruster.bollard_thrust == pytest.approx((-4.069 * gravity, 5.245 * gravity),
                                                         abs=0.05)
-        for limit, loss in zip(thruster.bollard_thrust, thruster.loss.speed_loss):
+        for limit, loss in zip(thruster.bollard_thrust, thruster.model.speed_loss):
             advance = abs(limit) / loss / (revolutions * diameter)
             assert advance == pytest.approx(0.75, rel=0.03)

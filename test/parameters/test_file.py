@@ -7,9 +7,9 @@ import pytest
 import rclpy
 from thrust_allocator.parameters import file as parameter_file
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import load_vehicle
+from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.node import ThrustAllocator
 
 HEAD = '/**:\n  ros__parameters:\n    '
@@ -224,4 +224,4 @@ def test_ros_reads_the_same_vehicle(more, tmp_path):
         node.destroy_node()
     finally:
         context.try_shutdown()
-    assert node.vehicle == Vehicle.from_parameters(read_parameters(read_parameter_file(path)))
+    assert node.vehicle == load_vehicle(path)

@@ -7,11 +7,10 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 from support.processes import NODE, TIMEOUT
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import load_vehicle
+from thrust_allocator.parameters.file import default_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import AllocationProblem
 import yaml
 
@@ -128,7 +127,7 @@ def test_a_file_is_a_vehicle_or_one_line(content, path):
     """Whatever the file holds, it describes a vehicle that allocates, or one line says why not."""
     path.write_bytes(content)
     try:
-        vehicle = Vehicle.from_parameters(read_parameters(read_parameter_file(path)))
+        vehicle = load_vehicle(path)
         problem, bounds = AllocationProblem(vehicle), ThrustBounds(vehicle)
     except ParameterError as error:
         line = str(error)

@@ -7,9 +7,10 @@ from hypothesis import assume, given, settings, strategies as st
 import numpy as np
 import pytest
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import describe
+from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.physics.models import Constant
 
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
 COLUMNS = {  # physics: x forward, y starboard, z down; thrust axes meet the hull axis ahead
@@ -30,7 +31,7 @@ def mt2012():
 
 def build(values):
     """Return the vehicle that some values describe."""
-    return Vehicle.from_parameters(read_parameters(values))
+    return describe(values).vehicle
 
 
 def single(position, direction, **more):
@@ -125,7 +126,7 @@ def with_propeller(diameter, revolutions, slope, density, bollard_thrust):
         'water_density': density, 'thrusters.t.model': 'propeller',
         'thrusters.t.bollard_thrust': bollard_thrust, 'thrusters.t.propeller.diameter': diameter,
         'thrusters.t.propeller.max_revolutions': revolutions,
-        'thrusters.t.propeller.thrust_slope': slope}).thrusters[0].loss.speed_loss
+        'thrusters.t.propeller.thrust_slope': slope}).thrusters[0].model.speed_loss
 
 
 def test_speed_loss_of_mt2012_from_its_propeller():
@@ -156,13 +157,13 @@ def test_a_propeller_of_absurd_loss_is_refused(data):
         with_propeller(*data)
 
 
-def test_models_have_their_loss():
-    """speed_loss comes through as given, a tunnel has c and rho S, a constant one no loss."""
-    losses = [thruster.loss for thruster in build(mt2012() | {'water_density': 998.0}).thrusters]
-    assert [loss.speed_loss for loss in losses[:4]] == [(24.0, 42.2)] * 4
-    assert [loss.opposed_loss for loss in losses[:4]] == [(9.9, 17.5)] * 4
-    assert losses[4].decay * losses[4].jet_mass == pytest.approx(7.0 * 998.0 * 0.0707, rel=1e-12)
-    assert build(single((0, 0, 0), (1, 0, 0))).thrusters[0].loss is None
+def test_models_have_their_coefficients():
+    """speed_loss comes through as given, a tunnel has c and rho S, a constant model nothing."""
+    models = [thruster.model for thruster in build(mt2012() | {'water_density': 998.0}).thrusters]
+    assert [model.speed_loss for model in models[:4]] == [(24.0, 42.2)] * 4
+    assert [model.opposed_loss for model in models[:4]] == [(9.9, 17.5)] * 4
+    assert models[4].decay * models[4].jet_mass == pytest.approx(7.0 * 998.0 * 0.0707, rel=1e-12)
+    assert isinstance(build(single((0, 0, 0), (1, 0, 0))).thrusters[0].model, Constant)
 
 
 @pytest.mark.parametrize('weights, expected', [
@@ -193,10 +194,10 @@ def test_both_warnings_at_once():
 def test_nothing_can_be_changed():
     """Vehicle, thrusters and parameters are immutable, arrays read-only."""
     parameters = read_parameters(mt2012())
-    vehicle = Vehicle.from_parameters(parameters)
+    vehicle = describe(mt2012()).vehicle
     for thing, name in ((vehicle, 'wrench_weights'), (vehicle, 'configuration_matrix'),
-                        (vehicle.thrusters[0], 'weight'), (vehicle.thrusters[0].loss, 'speed_loss'),
-                        (parameters, 'values')):
+                        (vehicle.thrusters[0], 'weight'),
+                        (vehicle.thrusters[0].model, 'speed_loss'), (parameters, 'values')):
         with pytest.raises(FrozenInstanceError):
             setattr(thing, name, None)
     for mapping in (parameters.values, parameters.definitions):

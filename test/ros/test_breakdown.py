@@ -4,9 +4,9 @@ import pytest
 
 
 @pytest.mark.parametrize('place', [
-    'allocation.AllocationProblem, "solve"', 'bounds.ThrustBounds, "__call__"',
+    'allocation.AllocationProblem, "solve"', 'bounds.ThrustBounds, "in_flow"',
     'inputs.Inputs, "accept_wrench"', 'node.ThrustAllocator, "_report"',
-    'node.ThrustAllocator, "_publish"'])
+    'node.ThrustAllocator, "_send"'])
 def test_an_exception_in_a_callback(breaking, place):
     """After an exception, wherever it comes from, zeros come last and the status is not 0."""
     status, stderr = breaking(f'patch({place}, fail)').end()

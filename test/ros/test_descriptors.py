@@ -7,7 +7,8 @@ import pytest
 from rclpy.parameter import parameter_value_to_python, Parameter
 from support.documents import shown
 from support.paths import ROOT
-from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
+from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.table import NODE, THRUSTER
 from thrust_allocator.parameters.types import Real
 
 DOCUMENT = ROOT / 'doc/parameters.md'
@@ -76,7 +77,8 @@ def test_units(rows):
 def test_ranges(described):
     """A scalar has the range of its table entry for a slider, and nothing else has one."""
     ranges = {one.name: one.type for one in (
-        *NODE, *THRUSTER, *MODELS['propeller'], *MODELS['tunnel']) if isinstance(one.type, Real)}
+        *NODE, *THRUSTER, *(one for model in MODEL_PARAMETERS.values() for one in model.all))
+        if isinstance(one.type, Real)}
     for name, found in described.items():
         for descriptor, value in found:
             assert descriptor.integer_range == []

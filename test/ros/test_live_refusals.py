@@ -8,7 +8,8 @@ import pytest
 from rclpy.parameter import Parameter
 from support.live_parameters import AHEAD, change, expected, GENTLE, TWIST, UP
 from support.peer import TYPES_OUT
-from thrust_allocator.parameters.table import MODELS, NODE, THRUSTER
+from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.table import NODE, THRUSTER
 
 DOWN, TUNNEL = 'thrusters.down.', 'thrusters.tunnel.'
 READ_ONLY = {  # what shapes the node, and rclpy's own
@@ -88,7 +89,7 @@ def test_what_is_read_only_says_so(stepped, name, value):
 
 def test_nothing_else_is_read_only():
     """The table has no read-only parameter beyond these."""
-    table = (*NODE, *THRUSTER, *(one for model in MODELS.values() for one in model))
+    table = (*NODE, *THRUSTER, *(one for model in MODEL_PARAMETERS.values() for one in model.all))
     fixed = {one.name for one in table if not one.live}
     assert fixed < {name.removeprefix(UP) for name in READ_ONLY}
 

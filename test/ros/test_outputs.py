@@ -9,7 +9,6 @@ from std_msgs.msg import Float64
 from support.peer import cruise
 from support.stepped_peer import is_stopped
 from support.vehicles import NAMES
-from thrust_allocator.physics.bollard_equivalent import thrust_in_flow
 
 WRENCH, TWIST = cruise(0.9, side=1.0)
 UNITS = ('newton', 'bollard_newton', 'bollard_fraction')
@@ -58,7 +57,7 @@ def told_to_newtons(one, told, unit):
         told = [share * abs(thruster.bollard_thrust[int(share > 0.0)])
                 for share, thruster in zip(told, vehicle.thrusters)]
     return np.array([
-        thrust_in_flow(e, thruster.loss, thruster.bollard_thrust, *flow)
+        thruster.model.thrust_in_flow(e, *flow)
         for e, thruster, flow in zip(told, vehicle.thrusters, one.bounds.flow(TWIST))])
 
 

@@ -5,8 +5,7 @@ from rcl_interfaces.msg import ParameterType
 from rclpy.parameter import parameter_value_to_python
 from support.live_parameters import change
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
-from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.parameters.build import describe
 import yaml
 
 FILES = sorted(default_parameter_file().parent.glob('*.yaml'))
@@ -37,7 +36,7 @@ def dump(one):
 
 def vehicle(values):
     """Return the vehicle that a file's values describe."""
-    return Vehicle.from_parameters(read_parameters(values))
+    return describe(values).vehicle
 
 
 def assert_round_trip(one, start, path):
@@ -94,8 +93,8 @@ def test_names_of_every_node_are_passed_over(stepped, start, tmp_path):
         '/clock': {'subscription': {'depth': 1, 'reliability': 'best_effort'}}}
     path = tmp_path / 'dump.yaml'
     path.write_text(yaml.dump(document), encoding='utf-8')
-    parameters = read_parameters(read_parameter_file(path, NAME))
-    assert parameters.warnings == () and Vehicle.from_parameters(parameters) == one.node.vehicle
+    description = describe(read_parameter_file(path, NAME))
+    assert description.warnings == [] and description.vehicle == one.node.vehicle
     again, _ = start(file=path, remap='__ns:=/alpha/beta')
     assert again.vehicle == one.node.vehicle
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from support.stepped_peer import inside_limits
-from support.vehicles import limits_of, mt2012, NAMES, propeller_loss, thruster
+from support.vehicles import limits_of, mt2012, NAMES, propeller, thruster
 from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
-from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.models import Constant, Tunnel
 
 SIZE = 4
 thrusts = st.lists(st.floats(-200.0, 200.0), min_size=SIZE, max_size=SIZE).map(np.array)
@@ -74,17 +74,18 @@ def test_rate_limit_on_the_node(stepped):
     assert forced > 5 and limited > 50
 
 
-LOSSES = {'propeller': propeller_loss(), 'tunnel': TunnelLoss(7.0, 1025.0 * 0.0707),
-          'constant': None}
+BOLLARD = (-68.2, 120.1)
+MODELS = {'propeller': propeller(), 'tunnel': Tunnel(BOLLARD, 7.0, 1025.0 * 0.0707),
+          'constant': Constant(BOLLARD)}
 velocities = st.lists(st.floats(-5.0, 5.0), min_size=6, max_size=6)
 cutoffs = st.floats(0.0, 0.99)
 bollards = st.tuples(st.floats(-500.0, 0.0), st.floats(1e-3, 500.0))
 
 
-@given(st.sampled_from([*LOSSES.values()]), bollards, cutoffs, velocities)
-def test_cutoff_is_the_formula(loss, bollard, share, velocity):
+@given(st.sampled_from([*MODELS.values()]), bollards, cutoffs, velocities)
+def test_cutoff_is_the_formula(model, bollard, share, velocity):
     """In either sense the limit is max(0, (limit - share T0) / (1 - share)), in every model."""
-    plain = thruster(bollard_thrust=bollard, loss=loss)
+    plain = thruster(model=replace(model, bollard_thrust=bollard))
     before, after = limits_of(plain, replace(plain, cutoff=share), velocity=velocity).T
     for limit, found, most in zip(np.abs(before), np.abs(after), np.abs(bollard)):
         expected = max(0.0, (limit - share * most) / (1.0 - share))
@@ -95,17 +96,17 @@ def test_cutoff_is_the_formula(loss, bollard, share, velocity):
     assert after[0] <= 0.0 <= after[1]
 
 
-@given(st.sampled_from([*LOSSES.values()]), bollards, st.floats(0.0, 1.0, exclude_max=True))
-def test_cutoff_takes_nothing_at_rest(loss, bollard, share):
+@given(st.sampled_from([*MODELS.values()]), bollards, st.floats(0.0, 1.0, exclude_max=True))
+def test_cutoff_takes_nothing_at_rest(model, bollard, share):
     """At rest the limits are the Bollard ones exactly, whatever the share."""
-    one = thruster(bollard_thrust=bollard, loss=loss)
+    one = thruster(model=replace(model, bollard_thrust=bollard))
     assert limits_of(replace(one, cutoff=share), velocity=[0.0] * 6)[:, 0].tolist() == [*bollard]
 
 
 @given(bollards, cutoffs, st.floats(0.0, 2.0), st.floats(0.0, 2.0))
 def test_cutoff_has_no_jump(bollard, share, speed, other):
     """A limit with cut-off changes 1 / (1 - share) times as much as without, at most."""
-    plain = thruster(bollard_thrust=bollard, loss=LOSSES['tunnel'])
+    plain = thruster(model=replace(MODELS['tunnel'], bollard_thrust=bollard))
     cut = replace(plain, cutoff=share)
     one, two = (limits_of(plain, cut, velocity=[0.0, value, 0.0, 0.0, 0.0, 0.0])
                 for value in (speed, other))

@@ -10,10 +10,9 @@ from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
 from support.stepped_peer import inside_limits
 from thrust_allocator.parameters.file import is_of_every_node
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import describe
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.frames import DOFS
-from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.parameters import plain
 from thrust_allocator.solve.problem import AllocationProblem
 
@@ -127,9 +126,9 @@ def test_storm(start):
         Parameter('wrench_timeout', value=10.0), Parameter('thrusters.up.enabled', value=True)]))
     peer.on_tick = peer.send
     tick = peer.settle(WRENCH, TWIST)
-    vehicle = Vehicle.from_parameters(read_parameters({
+    vehicle = describe({
         name: plain(one.value) for name, one in node.get_parameters_by_prefix('').items()
-        if not is_of_every_node(name)}))
+        if not is_of_every_node(name)}).vehicle
     limits = ThrustBounds(vehicle)(SIGNS * TWIST)
     assert_allclose(tick['thruster_setpoints'], AllocationProblem(vehicle).solve(
         SIGNS * WRENCH, limits).thrusts, atol=1e-5)

@@ -60,7 +60,7 @@ def test_a_missing_sense_does_not_count():
     """A propeller that only pushes ahead has the authority of ahead."""
     one = described('delphin2')
     ahead = replace(one, thrusters=(*one.thrusters[:4], replace(
-        one.thrusters[4], bollard_thrust=(0.0, 15.7))))
+        one.thrusters[4], model=replace(one.thrusters[4].model, bollard_thrust=(0.0, 15.7)))))
     assert of(ahead)[0] == pytest.approx(15.7)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.vehicles import described, mt2012, random_vehicle, thruster
+from thrust_allocator.physics.models import Constant
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.attainable import AttainableSet, TooManyFaces
 from thrust_allocator.solve.authority import authority, authority_weights
@@ -138,9 +139,9 @@ def test_a_dead_thruster_does_not_take_every_dof_down():
 
 def test_one_sided_thrusters_give_the_nearest_wrench():
     """Two thrusters that only push ahead keep surge when sway, which they lack, is asked for."""
-    vehicle = Vehicle((thruster('port', (0.0, -0.5, 0.0), bollard_thrust=(0.0, 50.0)),
-                       thruster('star', (0.0, 0.5, 0.0), bollard_thrust=(0.0, 50.0)),
-                       thruster('side', direction=(0.0, 1.0, 0.0), bollard_thrust=(0.0, 20.0))),
+    vehicle = Vehicle((thruster('port', (0.0, -0.5, 0.0), model=Constant((0.0, 50.0))),
+                       thruster('star', (0.0, 0.5, 0.0), model=Constant((0.0, 50.0))),
+                       thruster('side', direction=(0.0, 1.0, 0.0), model=Constant((0.0, 20.0)))),
                       PLANE)
     kept, limits = compromise(vehicle, 1.0), vehicle.bollard_thrust
     found = kept.solve(np.array([300.0, -10.0, 0.0, 0.0, 0.0, 0.0]), limits, limits)

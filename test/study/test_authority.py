@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from support.paths import CONFIG
 from support.vehicles import mt2012, PITCH, random_vehicle, thruster
-from thrust_allocator.parameters.file import read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.models import Constant
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import AllocationProblem
 from thrust_allocator.study import findings
@@ -104,8 +104,7 @@ def test_random_vehicles_against_vertices():
 @pytest.mark.parametrize('speed', [0.0, 0.5, 1.0])
 def test_the_allocator_reaches_each_end(name, kind, speed):
     """With R large for what holds and what is wanted, and 0 for the rest, it gets within 1 %."""
-    vehicle = Vehicle.from_parameters(read_parameters(
-        read_parameter_file(CONFIG / f'{name}.yaml')))
+    vehicle = load_vehicle(CONFIG / f'{name}.yaml')
     manoeuvre = Manoeuvre(drag=(0.17 if name == 'delphin2' else 18.0, 0.0, 0.0))
     velocity = manoeuvre.velocity(speed, 0.0)
     limits, cruise = ThrustBounds(vehicle)(velocity), manoeuvre.cruise(velocity)
@@ -149,7 +148,7 @@ def test_without_its_tunnel_pitch_needs_heave():
 
 def test_a_single_thruster():
     """One thruster, one DOF: its limits, with nothing to hold."""
-    vehicle = Vehicle((thruster(bollard_thrust=(-3.0, 7.0)),), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    vehicle = Vehicle((thruster(model=Constant((-3.0, 7.0))),), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     ranges = Authority(vehicle)(vehicle.bollard_thrust, np.zeros(6))
     assert ranges[:, 0] == pytest.approx(np.array([[-3.0, 7.0]] * 2))
     assert np.isnan(ranges[:, 1:]).all()

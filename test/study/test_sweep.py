@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.vehicles import HEAVE, mt2012, paper_test as tick, PITCH, propeller_loss, thruster
-from thrust_allocator.physics.bollard_equivalent import bollard_equivalent
+from support.vehicles import HEAVE, mt2012, paper_test as tick, PITCH, propeller, thruster
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.flow import FlowAtThrusters
 from thrust_allocator.physics.vehicle import Vehicle
@@ -66,7 +65,7 @@ def test_a_bollard_curve_told_the_equivalent_thrust_delivers_it():
     """The Bollard-equivalent thrust is what makes the second driver like the first."""
     vehicle, (command, velocity) = mt2012(), tick(0.9)
     setpoints = sweep(vehicle, [velocity], [command]).thrusts[0, MOVING]
-    told = [bollard_equivalent(setpoint, one.loss, one.bollard_thrust, *flow)
+    told = [one.model.bollard_equivalent(setpoint, *flow)
             for setpoint, one, flow in zip(setpoints, vehicle.thrusters,
                                            FlowAtThrusters(vehicle.thrusters)(velocity))]
     by_curve = Drivers(vehicle)(np.array(told), velocity)[BOLLARD_CURVE]
@@ -133,8 +132,8 @@ def test_pitch_moves_from_tunnel_to_stern():
 
 def test_shares_of_thrusters_of_one_kind():
     """Where only propellers act each has its share, and those that agree stand together."""
-    loss = propeller_loss()
-    vehicle = Vehicle(tuple(thruster(name, loss=loss) for name in 'abc'), (1.0, 0, 0, 0, 0, 0))
+    vehicle = Vehicle(tuple(thruster(name, model=propeller()) for name in 'abc'),
+                      (1.0, 0, 0, 0, 0, 0))
     found = shares(vehicle, np.array([[1.0, 1.0, 2.0], [2.0, 2.0, 4.0], [0.0, 0.0, 0.0]]), 0)
     assert list(found) == ['a, b, each', 'c']
     assert found['c'] == pytest.approx([50.0, 50.0, np.nan], nan_ok=True)
@@ -178,7 +177,8 @@ def test_default_manoeuvre():
     """The paper's test where the vehicle can follow it; less pitch, or another DOF, otherwise."""
     assert paper_test([mt2012()], 1.8) == Manoeuvre()
     weak = without(replace(mt2012(), thrusters=tuple(
-        replace(one, bollard_thrust=(-30.0, 40.0)) for one in mt2012().thrusters)), ['tunnel'])
+        replace(one, model=replace(one.model, bollard_thrust=(-30.0, 40.0)))
+        for one in mt2012().thrusters)), ['tunnel'])
     chosen = paper_test([mt2012(), weak], 1.2)
     assert 0.0 < chosen.wrench[PITCH] < 50.0 and 0.0 < chosen.drag[0] < 40.0
     no_pitch = mt2012(wrench_weights__pitch=0.0)

@@ -1,6 +1,6 @@
 """How the documents show what the code has."""
 
-from thrust_allocator.parameters.table import REQUIRED
+from thrust_allocator.parameters.definition import REQUIRED
 
 
 def shown(default) -> str:

@@ -2,10 +2,8 @@
 
 import numpy as np
 from rclpy.parameter import Parameter
-from thrust_allocator.parameters.file import read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import AllocationProblem
 
 AHEAD = np.array([600.0, 0.0, 30.0, 0.0, 40.0, 10.0])  # frd axes: out of reach, so bounds count
@@ -24,6 +22,6 @@ def change(one, changes, atomically=False):
 
 def expected(file, wrench, twist):
     """Return limits and setpoints that the package's mathematics gives for a file's vehicle."""
-    vehicle = Vehicle.from_parameters(read_parameters(read_parameter_file(file)))
+    vehicle = load_vehicle(file)
     limits = ThrustBounds(vehicle)(twist)
     return limits.ravel(), AllocationProblem(vehicle).solve(wrench, limits).thrusts

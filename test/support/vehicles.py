@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 from support.paths import CONFIG
+from thrust_allocator.parameters.build import describe, load_vehicle
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.physics.models.propeller import PropellerLoss
-from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.models import Constant, Propeller, ThrusterModel, Tunnel
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 # The table of the paper's test, recomputed: speed; thrusts down, left, up, right, tunnel; limits of
@@ -29,14 +28,14 @@ HEAVE, PITCH = 2, 4
 
 def described(name: str) -> Vehicle:
     """Return one of the vehicles that come with the package."""
-    return Vehicle.from_parameters(read_parameters(read_parameter_file(CONFIG / f'{name}.yaml')))
+    return load_vehicle(CONFIG / f'{name}.yaml')
 
 
 def mt2012(**changes) -> Vehicle:
     """Return the default vehicle; a change is a full parameter name with '__' for each dot."""
     given = read_parameter_file(default_parameter_file())
     given.update({name.replace('__', '.'): value for name, value in changes.items()})
-    return Vehicle.from_parameters(read_parameters(given))
+    return describe(given).vehicle
 
 
 def paper_test(speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -45,9 +44,9 @@ def paper_test(speed: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def thruster(name='t', position=(0.0, 0.0, 0.0), direction=(1.0, 0.0, 0.0),
-             bollard_thrust=(-100.0, 100.0), weight=1.0, torque_ratio=0.0, loss=None) -> Thruster:
-    """Return a thruster; of model 'constant' unless a loss is given."""
-    return Thruster(name, position, direction, bollard_thrust, weight, torque_ratio, loss)
+             model=Constant((-100.0, 100.0)), weight=1.0, torque_ratio=0.0) -> Thruster:
+    """Return a thruster; of model 'constant' unless another is given."""
+    return Thruster(name, position, direction, model, weight, torque_ratio)
 
 
 def limits_of(*thrusters, velocity) -> np.ndarray:
@@ -55,13 +54,13 @@ def limits_of(*thrusters, velocity) -> np.ndarray:
     return ThrustBounds(Vehicle(thrusters, (1.0,) * 6))(np.array(velocity, dtype=float))
 
 
-def propeller_loss(**changes) -> PropellerLoss:
-    """Return the loss of MT-2012's propellers with some coefficients changed."""
+def propeller(**changes) -> Propeller:
+    """Return MT-2012's propeller with some coefficients changed."""
     coefficients = {
-        'speed_loss': (24.0, 42.2), 'critical_angle_slope': 0.20,
+        'bollard_thrust': (-68.2, 120.1), 'speed_loss': (24.0, 42.2), 'critical_angle_slope': 0.20,
         'critical_angle_min': math.pi / 3, 'second_critical_angle_offset': 0.0,
         'second_critical_angle_slope': 0.20, 'opposed_loss': (9.9, 17.5), 'opposed_floor': 0.85}
-    return PropellerLoss(**coefficients | changes)
+    return Propeller(**coefficients | changes)
 
 
 def random_vehicle(rng: np.random.Generator, thrusters: int | None = None) -> Vehicle:
@@ -79,10 +78,11 @@ def _random_thruster(rng: np.random.Generator, index: int) -> Thruster:
     if rng.random() < 0.3:  # along an axis, as most real thrusters are: makes B degenerate
         direction = np.eye(3)[rng.integers(3)]
     direction /= np.linalg.norm(direction)
-    loss = (None, TunnelLoss(rng.uniform(0.3, 7.0), 1025.0 * 0.07),
-            propeller_loss(speed_loss=(rng.uniform(5.0, 30.0), rng.uniform(10.0, 50.0))),
-            )[rng.integers(3)]
     reverse = 0.0 if rng.random() < 0.1 else -rng.uniform(20.0, 150.0)
-    return thruster(f't{index}', tuple(rng.uniform(-2.0, 2.0, 3)), tuple(direction),
-                    (reverse, rng.uniform(20.0, 150.0)), rng.choice([1.0, 1.0, 0.5, 3.0]),
-                    rng.choice([0.0, 0.0, 0.02]), loss)
+    bollard = reverse, rng.uniform(20.0, 150.0)
+    model: ThrusterModel = (
+        Constant(bollard), Tunnel(bollard, rng.uniform(0.3, 7.0), 1025.0 * 0.07),
+        propeller(bollard_thrust=bollard,
+                  speed_loss=(rng.uniform(5.0, 30.0), rng.uniform(10.0, 50.0))))[rng.integers(3)]
+    return thruster(f't{index}', tuple(rng.uniform(-2.0, 2.0, 3)), tuple(direction), model,
+                    rng.choice([1.0, 1.0, 0.5, 3.0]), rng.choice([0.0, 0.0, 0.02]))

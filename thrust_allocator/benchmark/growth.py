@@ -3,16 +3,16 @@
 from pathlib import Path
 
 import numpy as np
-from thrust_allocator.benchmark.peers import Peer
-from thrust_allocator.benchmark.qp_peers import Daqp, Osqp, Quadprog
-from thrust_allocator.benchmark.table import table
+from thrust_allocator.benchmark.qp_rivals import Daqp, Osqp, Quadprog
+from thrust_allocator.benchmark.rivals import Rival
 from thrust_allocator.benchmark.ticks import random_vehicle, smooth_walk
 from thrust_allocator.benchmark.timing import (
     Contender, interleave, is_installed, REPEATS, WholeTick)
+from thrust_allocator.markdown import table
 
 SIZES = (4, 5, 8, 16, 32, 64)  # thrusters
 VEHICLES = 3  # of each size
-PEERS: tuple[type[Peer], ...] = (Daqp, Quadprog, Osqp)
+RIVALS: tuple[type[Rival], ...] = (Daqp, Quadprog, Osqp)
 PLOTTED = {  # Okabe and Ito's colours, told apart by colour-blind readers; marks survive print
     'ours: bounds + solve': ('black', 'o', '-'), 'ours: solve': ('#0072B2', 's', '-'),
     'ours: bounds': ('#009E73', '^', '-'), Daqp.name: ('#E69F00', 'D', '--'),
@@ -27,7 +27,7 @@ def measure(count: int, repeats: int) -> dict[str, list[float] | None]:
     """
     walks = [[smooth_walk(random_vehicle(size, seed), max(count // VEHICLES, 10), seed)
               for seed in range(VEHICLES)] for size in SIZES]
-    there = [kind for kind in PEERS if is_installed(kind, walks[0][0])]
+    there = [kind for kind in RIVALS if is_installed(kind, walks[0][0])]
     ours = [[WholeTick(walk.vehicle) for walk in group] for group in walks]
     others = {kind: [[Contender(kind, walk.vehicle) for walk in group] for group in walks]
               for kind in there}
@@ -43,7 +43,7 @@ def measure(count: int, repeats: int) -> dict[str, list[float] | None]:
     return {
         'ours: bounds': curve(ours, 'bounds_times'), 'ours: solve': curve(ours, 'solve_times'),
         'ours: bounds + solve': curve(ours), 'p99': curve(ours, share=0.99),
-        **{kind.name: curve(others[kind]) if kind in there else None for kind in PEERS}}
+        **{kind.name: curve(others[kind]) if kind in there else None for kind in RIVALS}}
 
 
 def report(count: int = 3000, repeats: int = REPEATS, plot: Path | None = None) -> None:
@@ -54,12 +54,12 @@ def report(count: int = 3000, repeats: int = REPEATS, plot: Path | None = None) 
     five = ticks[SIZES.index(5)]
     print(table(
         ('thrusters', 'bounds', 'solve', 'both', 'both p99', 'both / five thrusters',
-         *(kind.name for kind in PEERS)),
+         *(kind.name for kind in RIVALS)),
         [(str(size), *(f'{curves[name][i]:.1f}' for name in (
             'ours: bounds', 'ours: solve', 'ours: bounds + solve', 'p99')),
           f'{ticks[i] / five:.2f}',
           *(f'{curves[kind.name][i]:.1f}' if curves[kind.name] else 'missing'
-            for kind in PEERS))
+            for kind in RIVALS))
          for i, size in enumerate(SIZES)]), flush=True)
     if plot is not None:
         draw(curves, plot)

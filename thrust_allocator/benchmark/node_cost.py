@@ -13,7 +13,7 @@ from typing import NamedTuple
 import uuid
 
 import numpy as np
-from thrust_allocator.benchmark.table import table
+from thrust_allocator.markdown import table
 
 RATES = (50.0, 100.0, 200.0)  # [Hz]
 EXECUTORS = ('SingleThreadedExecutor', 'EventsExecutor')

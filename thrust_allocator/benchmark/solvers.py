@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 
 import numpy as np
-from thrust_allocator.benchmark.peers import (
-    BoundedLeastSquares, Ours, Peer, PseudoInverse, SequentialLeastSquares)
-from thrust_allocator.benchmark.qp_peers import CasadiQrqp, Daqp, Osqp, OsqpRebuilt, Quadprog
-from thrust_allocator.benchmark.table import table
+from thrust_allocator.benchmark.qp_rivals import CasadiQrqp, Daqp, Osqp, OsqpRebuilt, Quadprog
+from thrust_allocator.benchmark.rivals import (
+    BoundedLeastSquares, Ours, Rival, PseudoInverse, SequentialLeastSquares)
 from thrust_allocator.benchmark.ticks import mt2012, paper_sweep, smooth_walk, switching_walk, Walk
 from thrust_allocator.benchmark.timing import (
     Contender, interleave, is_installed, REPEATS, WholeTick)
+from thrust_allocator.markdown import table
 
-PEERS: tuple[type[Peer], ...] = (
+RIVALS: tuple[type[Rival], ...] = (
     Ours, PseudoInverse, Daqp, Quadprog, Osqp, CasadiQrqp, BoundedLeastSquares, OsqpRebuilt,
     SequentialLeastSquares)
-SLOW_EVERY = 10  # a slow peer gets one tick in so many
+SLOW_EVERY = 10  # a slow rival gets one tick in so many
 
 
 class Measured:
@@ -25,7 +25,7 @@ class Measured:
         self.reference, optima = exact_optima(walk)
         self.contenders = {
             kind: Contender(kind, walk.vehicle, SLOW_EVERY if kind.slow else 1)
-            if is_installed(kind, walk) else None for kind in PEERS}
+            if is_installed(kind, walk) else None for kind in RIVALS}
         self.tick = WholeTick(walk.vehicle)
         interleave([([*filter(None, self.contenders.values()), self.tick], walk.ticks, optima)],
                    repeats)
@@ -62,11 +62,11 @@ def exact_optima(walk: Walk) -> tuple[str, list[np.ndarray | None]]:
     """Return the optimum of each tick by an independent solver, and its name; None: no solver."""
     for kind in (Daqp, Quadprog):
         if is_installed(kind, walk):
-            peer = kind(walk.vehicle)
+            rival = kind(walk.vehicle)
             optima: list[np.ndarray | None] = []
             for tick in walk.ticks:
-                optimum = peer.solve(tick.wrench, tick.limits)
-                optima.append(optimum if peer.solved else None)
+                optimum = rival.solve(tick.wrench, tick.limits)
+                optima.append(optimum if rival.solved else None)
             return kind.name, optima
     return 'nobody', [None] * len(walk.ticks)
 

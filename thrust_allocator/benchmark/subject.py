@@ -16,11 +16,11 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
+from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
 from thrust_allocator.ros.node import INPUT, ThrustAllocator
 from thrust_allocator.ros.outputs import OUTPUT
-from thrust_allocator.parameters.file import NODE_NAME
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012

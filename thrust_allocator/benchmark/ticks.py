@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
+from thrust_allocator.parameters.build import load_vehicle
+from thrust_allocator.parameters.file import default_parameter_file
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.table import read_parameters
-from thrust_allocator.physics.models.propeller import PropellerLoss
-from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.models import Propeller, Tunnel
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 RATE = 50.0  # ticks per second, the node's default [Hz]
@@ -45,7 +44,7 @@ class Walk(NamedTuple):
 
 def mt2012() -> Vehicle:
     """Return the default vehicle."""
-    return Vehicle.from_parameters(read_parameters(read_parameter_file(default_parameter_file())))
+    return load_vehicle(default_parameter_file())
 
 
 def paper_sweep(count: int = 1801) -> Walk:
@@ -82,15 +81,15 @@ def random_vehicle(thrusters: int, seed: int = 0) -> Vehicle:
     """Return a vehicle of MT-2012's kinds: every fifth thruster a tunnel, the rest propellers."""
     rng = np.random.default_rng([seed, thrusters])
     kinds = mt2012().thrusters
-    propeller, tunnel = (next(one for one in kinds if isinstance(one.loss, loss))
-                         for loss in (PropellerLoss, TunnelLoss))
+    propeller, tunnel = (next(one for one in kinds if one.model.NAME == model.NAME)
+                         for model in (Propeller, Tunnel))
     chosen = [tunnel if i % 5 == 4 else propeller for i in range(thrusters)]
     directions = rng.normal(size=(thrusters, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     positions = rng.uniform(-2.0, 2.0, (thrusters, 3))
     return Vehicle(
-        tuple(Thruster(f'{i}', tuple(position), tuple(direction), kind.bollard_thrust,
-                       kind.weight, kind.torque_ratio, kind.loss)
+        tuple(Thruster(f'{i}', tuple(position), tuple(direction), kind.model,
+                       kind.weight, kind.torque_ratio)
               for i, (kind, position, direction) in enumerate(
                   zip(chosen, positions.tolist(), directions.tolist()))),
         (1e4,) * 6)

@@ -5,7 +5,7 @@ import gc
 from time import perf_counter_ns
 
 import numpy as np
-from thrust_allocator.benchmark.peers import Ours, Peer
+from thrust_allocator.benchmark.rivals import Ours, Rival
 from thrust_allocator.benchmark.ticks import Tick, Walk
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.vehicle import Vehicle
@@ -14,24 +14,24 @@ REPEATS = 3  # of a sequence; a tick counts with the median of its times
 
 
 class Contender:
-    """A kind of peer and what was measured of it, one entry per tick that it was given."""
+    """A kind of rival and what was measured of it, one entry per tick that it was given."""
 
-    def __init__(self, kind: type[Peer], vehicle: Vehicle, every: int = 1) -> None:
+    def __init__(self, kind: type[Rival], vehicle: Vehicle, every: int = 1) -> None:
         """Take every tick, or one in `every`."""
         self.name, self.every = kind.name, every
-        self._make: Callable[[], Peer] = lambda: kind(vehicle)
+        self._make: Callable[[], Rival] = lambda: kind(vehicle)
         self._times: list[list[int]] = []  # of each repeat [ns]
         self.errors: list[float] = []  # greatest distance of a thrust from the optimum [N]
         self.unsolved = 0  # ticks of the last repeat
 
     def restart(self) -> None:
-        """Begin another repeat with a peer that knows nothing of the one before."""
-        self.peer, self.unsolved = self._make(), 0
+        """Begin another repeat with a rival that knows nothing of the one before."""
+        self.rival, self.unsolved = self._make(), 0
         self._times.append([])
 
     def run(self, tick: Tick, optimum: np.ndarray | None) -> None:
         """Solve one tick, timed, and judge the answer, untimed."""
-        solve, thrusts = self.peer.solve, None
+        solve, thrusts = self.rival.solve, None
         begin = perf_counter_ns()
         try:
             thrusts = solve(tick.wrench, tick.limits)
@@ -41,7 +41,7 @@ class Contender:
         self._judge(thrusts, optimum)
 
     def _judge(self, thrusts: np.ndarray | None, optimum: np.ndarray | None) -> None:
-        self.unsolved += thrusts is None or not self.peer.solved
+        self.unsolved += thrusts is None or not self.rival.solved
         if thrusts is not None and optimum is not None:
             self.errors.append(float(np.abs(thrusts - optimum).max()))
 
@@ -68,7 +68,7 @@ class WholeTick(Contender):
 
     def run(self, tick: Tick, optimum: np.ndarray | None) -> None:
         """Compute the bounds and solve, timed; judge the answer, untimed."""
-        bounds, solve, velocity = self._bounds, self.peer.solve, tick.velocity
+        bounds, solve, velocity = self._bounds, self.rival.solve, tick.velocity
         begin = perf_counter_ns()
         bounds(velocity)
         middle = perf_counter_ns()
@@ -76,7 +76,7 @@ class WholeTick(Contender):
         end = perf_counter_ns()
         self._bounds_times[-1].append(middle - begin)
         self._times[-1].append(end - begin)
-        self.iterations.append(self.peer.iterations)
+        self.iterations.append(self.rival.iterations)
         self._judge(thrusts, optimum)
 
     @property
@@ -116,8 +116,8 @@ def interleave(runs: Sequence[tuple[Sequence[Contender], Sequence[Tick],
         gc.unfreeze()
 
 
-def is_installed(kind: type[Peer], walk: Walk) -> bool:
-    """Tell whether what a kind of peer needs is there."""
+def is_installed(kind: type[Rival], walk: Walk) -> bool:
+    """Tell whether what a kind of rival needs is there."""
     try:
         kind(walk.vehicle)
     except ImportError:

@@ -1,9 +1,8 @@
 """The moving bounds tau_min(v, theta) and tau_max(v, theta) of the allocation problem."""
 
-from collections.abc import Callable
-
 import numpy as np
-from thrust_allocator.physics.flow import FlowAtThrusters
+from thrust_allocator.physics.flow import Flow, FlowAtThrusters
+from thrust_allocator.physics.models import Limits, LimitsLaw
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 
@@ -27,8 +26,11 @@ class ThrustBounds:
             [m/s, rad/s].
         :return: (2, p), row 0 lower (<= 0), row 1 upper (>= 0), within the Bollard limits [N].
         """
-        limits = [law(*flow) for law, flow in zip(self._laws, self.flow(velocity))]
-        return np.array(limits).T.copy()
+        return self.in_flow(self.flow(velocity))
+
+    def in_flow(self, flow: Flow) -> np.ndarray:
+        """Return the limits, as for a velocity, where the thrusters' motion is known already."""
+        return np.array([law(*motion) for law, motion in zip(self._laws, flow)]).T.copy()
 
 
 def rate_limited(limits: np.ndarray, last: np.ndarray, step: np.ndarray) -> np.ndarray:
@@ -48,32 +50,22 @@ def rate_limited(limits: np.ndarray, last: np.ndarray, step: np.ndarray) -> np.n
                      np.maximum(np.minimum(upper, last + step), lower)))
 
 
-Law = Callable[[float, float], tuple[float, float]]
-
-
-def _law(thruster: Thruster) -> Law:
+def _law(thruster: Thruster) -> LimitsLaw:
     """Return the limits of a thruster as a function of its speed along and across its axis."""
     if not thruster.enabled:
-        return lambda along, across: (0.0, 0.0)
-    if thruster.loss is None:
-        law = _constant(thruster.bollard_thrust)
-    else:
-        law = thruster.loss.law(thruster.bollard_thrust)
+        return lambda *flow: (0.0, 0.0)
+    law = thruster.model.limits
     return _cut_off(law, thruster) if thruster.cutoff else law
 
 
-def _constant(limits: tuple[float, float]) -> Law:
-    return lambda along, across: limits
-
-
-def _cut_off(law: Law, thruster: Thruster) -> Law:
+def _cut_off(law: LimitsLaw, thruster: Thruster) -> LimitsLaw:
     """Return a law that takes a thruster out, continuously, where its limit is hardly any use."""
     reverse, forward = thruster.bollard_thrust
     # (limit - kappa T_0) / (1 - kappa), written so that it is T_0 to the bit at rest
     per_loss = thruster.cutoff / (1.0 - thruster.cutoff)
 
-    def limits(along: float, across: float) -> tuple[float, float]:
-        lower, upper = law(along, across)
+    def limits(*flow: float) -> Limits:
+        lower, upper = law(*flow)
         return (min(0.0, lower - per_loss * (reverse - lower)),
                 max(0.0, upper - per_loss * (forward - upper)))
 

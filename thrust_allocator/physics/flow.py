@@ -1,10 +1,12 @@
-"""The flow that each thruster meets: its speed along and across the thrust axis."""
+"""The flow that each thruster meets: its speed along the thrust axis and two axes across it."""
 
 from collections.abc import Sequence
-from math import hypot
 
 import numpy as np
 from thrust_allocator.physics.vehicle import Thruster
+
+# Of each thruster: speed along its thrust axis and along two axes across it [m/s]
+Flow = list[tuple[float, float, float]]
 
 
 class FlowAtThrusters:
@@ -18,19 +20,19 @@ class FlowAtThrusters:
     def __init__(self, thrusters: Sequence[Thruster]) -> None:
         self._components = np.vstack([_components(thruster) for thruster in thrusters])
 
-    def __call__(self, velocity: np.ndarray) -> list[tuple[float, float]]:
+    def __call__(self, velocity: np.ndarray) -> Flow:
         """
         Return how each thruster moves through the water.
 
-        The angle of attack is atan2(across, along).
+        The angle of attack is atan2(hypot(one, other), along).
 
         :param velocity: (6,) velocity of the body origin through the water and turn rate, frd axes
             [m/s, rad/s].
-        :return: for each thruster its speed along its thrust axis and, >= 0, across it [m/s].
+        :return: for each thruster its speed along its thrust axis and along two axes across it
+            [m/s].
         """
         flat = self._components.dot(velocity).tolist()
-        return [(along, hypot(one, other))
-                for along, one, other in zip(flat[0::3], flat[1::3], flat[2::3])]
+        return list(zip(flat[0::3], flat[1::3], flat[2::3]))
 
 
 def _components(thruster: Thruster) -> np.ndarray:

@@ -1,15 +1,11 @@
 """The vehicle: its thrusters, its configuration matrix B, and the weights of the allocation."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from thrust_allocator.physics.frames import DOFS, frd_signs
-from thrust_allocator.parameters.table import Parameters
-from thrust_allocator.physics.models.propeller import PropellerLoss
-from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.models import Limits, ThrusterModel
 
 
 @dataclass(frozen=True)
@@ -19,13 +15,17 @@ class Thruster:
     name: str
     position: tuple[float, float, float]  # r [m]
     direction: tuple[float, float, float]  # d, unit vector along which positive thrust pushes [-]
-    bollard_thrust: tuple[float, float]  # (reverse <= 0, forward >= 0) [N]
-    weight: float  # Q [-]
-    torque_ratio: float  # k, reaction torque about d per newton of thrust [m]
-    loss: PropellerLoss | TunnelLoss | None  # None: the Bollard limits hold at every speed
+    model: ThrusterModel  # what it can give, and how it loses that in a flow
+    weight: float = 1.0  # Q [-]
+    torque_ratio: float = 0.0  # k, reaction torque about d per newton of thrust [m]
     max_rate: float = 0.0  # greatest change of thrust, 0: unlimited [N/s]
     cutoff: float = 0.0  # kappa, share of Bollard thrust below which a limit is not worth using
     enabled: bool = True
+
+    @property
+    def bollard_thrust(self) -> Limits:
+        """The limits of thrust at rest, (reverse <= 0, forward >= 0) [N]."""
+        return self.model.bollard_thrust
 
     @property
     def column(self) -> np.ndarray:
@@ -40,15 +40,6 @@ class Vehicle:
 
     thrusters: tuple[Thruster, ...]
     wrench_weights: tuple[float, ...]  # R of surge ... yaw; 0: not controlled
-
-    @classmethod
-    def from_parameters(cls, parameters: Parameters) -> 'Vehicle':
-        """Build the vehicle that checked parameters describe, turned into frd axes."""
-        values = parameters.values
-        return cls(
-            tuple(_thruster(name, {**values, **parameters.of_thruster(name)})
-                  for name in values['thruster_names']),
-            tuple(values[f'wrench_weights.{dof}'] for dof in DOFS))
 
     @cached_property
     def configuration_matrix(self) -> np.ndarray:
@@ -82,22 +73,6 @@ class Vehicle:
                     f'independent ways: not every wrench can be met; set the wrench_weights of '
                     'what need not be controlled to 0')
         return found
-
-
-_LOSSES = {'propeller': PropellerLoss.from_parameters,
-           'tunnel': TunnelLoss.from_parameters,
-           'constant': lambda name, values: None}
-
-
-def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
-    """Build a thruster from its own parameters and those of the node."""
-    signs = frd_signs(values['vehicle_frame'])[:3]
-    direction = np.array(values['direction'])
-    direction = signs * direction / np.linalg.norm(direction)
-    return Thruster(name, tuple((signs * values['position']).tolist()), tuple(direction.tolist()),
-                    values['bollard_thrust'], values['weight'], values['torque_ratio'],
-                    _LOSSES[values['model']](name, values),
-                    values['max_rate'], values['cutoff'], values['enabled'])
 
 
 def _frozen(array: np.ndarray) -> np.ndarray:

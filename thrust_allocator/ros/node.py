@@ -1,4 +1,4 @@
-"""The ROS 2 node: everything of ROS that the allocator needs, and no mathematics."""
+"""The ROS 2 node: takes messages in, asks for a tick, and sends it out."""
 
 import time
 
@@ -6,7 +6,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import (
     Twist, TwistStamped, TwistWithCovarianceStamped, Vector3Stamped, Wrench, WrenchStamped)
 from nav_msgs.msg import Odometry
-import numpy as np
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType, JumpThreshold
 from rclpy.duration import Duration
@@ -15,20 +14,17 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
-from thrust_allocator.solve.problem import AllocationProblem
-from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
-from thrust_allocator.diagnosis import allocation_figures, Findings, Level, Period, shortfall
-from thrust_allocator.physics.frames import frd_signs
-from thrust_allocator.inputs import Inputs, NEVER, Received
+from thrust_allocator.diagnosis import allocation_figures, Findings, Level, shortfall, Tally
+from thrust_allocator.inputs import age_in_seconds, Inputs
+from thrust_allocator.parameters.file import NODE_NAME
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.markers import thruster_markers
 from thrust_allocator.ros.messages import (
     quaternion_components, status_message, twist_components, vector_components, wrench_components)
 from thrust_allocator.ros.outputs import Outputs
-from thrust_allocator.parameters.file import NODE_NAME
-from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.parameters.table import Parameters
-from thrust_allocator.ros.parameters import changed, coerced, declare, take_overrides
-from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.ros.parameters import changes_of, coerced, declare, take_overrides
+from thrust_allocator.tick import Allocator, Tick
 from visualization_msgs.msg import MarkerArray
 
 # Best effort and depth 1 meet any publisher, and only the newest message counts
@@ -52,14 +48,13 @@ class ThrustAllocator(Node):
         """
         super().__init__(
             NODE_NAME, automatically_declare_parameters_from_overrides=True, **options)
-        parameters = take_overrides(self)
-        declare(self, parameters)
-        values = parameters.values
+        self._description = take_overrides(self)
+        declare(self, self._description.parameters)
+        values = self._description.parameters.values
+        self._allocator = Allocator.of(self._description)
         self._outputs = Outputs(self, values['thruster_names'], values['setpoint_unit'])
-        self._problem: AllocationProblem | None = None
-        self._timer = None
-        self._apply(parameters)
-        for warning in [*parameters.warnings, *self.vehicle.warnings()]:
+        self._outputs.publish_individually(values['publish_individual'])
+        for warning in self._description.warnings:
             self.get_logger().warning(warning)
 
         # The steady clock, so that setting the system clock changes nothing
@@ -68,12 +63,10 @@ class ThrustAllocator(Node):
         self._tick_clock = self.get_clock() if self._simulated else steady
         self._inputs = Inputs()
         self._enabled = values['start_enabled']
-        p = len(self.vehicle.thrusters)
-        self._setpoints, self._limits_now = np.zeros(p), np.zeros((2, p))  # last published [N]
-        self._velocity = np.zeros(6)  # that the limits were computed for, frd axes
-        self._last_tick: int | None = None  # when it began, on the node's clock [ns]
+        self._last_tick: Tick | None = None
+        self._last_time: int | None = None  # when the timer called last, on the tick's clock [ns]
         self._findings = Findings(self.get_logger())
-        self._period = Period()
+        self._tally = Tally()
         self._last_report: int | None = None  # [ns]
         self._known_dropped = self._inputs.dropped.copy()
         self.interrupted = False  # whether OSQP has caught a SIGINT
@@ -82,19 +75,25 @@ class ThrustAllocator(Node):
         self._marker_publisher = self.create_publisher(MarkerArray, 'thruster_markers', 1)
         self._subscribe(values['stamped_wrench'], values['velocity_type'])
         self.create_service(SetBool, '~/enable', self._on_enable)
-        self.add_pre_set_parameters_callback(lambda changes: coerced(changes, self._described))
+        self._checked = self._description  # what the newest check of a change has built
+        self.add_pre_set_parameters_callback(
+            lambda changes: coerced(changes, self._description.parameters))
         self.add_on_set_parameters_callback(self._check_change)
-        self.add_post_set_parameters_callback(
-            lambda changes: self._apply(changed(changes, self._described)))
+        self.add_post_set_parameters_callback(self._apply)
         self._after_messages = self.create_guard_condition(self._tick)
         self.create_timer(REPORT_PERIOD, self._report, clock=steady)
         self.create_timer(MARKER_PERIOD, self._draw, clock=steady)
-        self._timer = self.create_timer(
-            self._tick_period * 1e-9, self._on_timer, clock=self._tick_clock)
+        self._timer = self.create_timer(round(1e9 / values['rate']) * 1e-9, self._on_timer,
+                                        clock=self._tick_clock)
         if self._simulated:
             self._jump_handle = self._tick_clock.create_jump_callback(
                 JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1)),
                 post_callback=lambda jump: self._inputs.forget())
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """Return the vehicle as it is at present."""
+        return self._allocator.vehicle
 
     def _subscribe(self, stamped_wrench: bool, velocity_type: str) -> None:
         if stamped_wrench:
@@ -120,35 +119,23 @@ class ThrustAllocator(Node):
             return SetParametersResult(
                 successful=False, reason='use_sim_time: is read-only, must be set at start')
         try:
-            parameters = changed(changes, self._described)
-            self._problem.for_vehicle(Vehicle.from_parameters(parameters))
-            _period(parameters.values['rate'])
+            self._checked = self._description.changed(
+                changes_of(changes, self._description.parameters))
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _apply(self, parameters: Parameters) -> None:
-        """Put checked parameters in force from the next tick on."""
-        values = parameters.values
-        self._described = parameters
-        self.vehicle = Vehicle.from_parameters(parameters)
-        self._problem = (self._problem.for_vehicle(self.vehicle) if self._problem
-                         else AllocationProblem(self.vehicle))
-        self._bounds = ThrustBounds(self.vehicle)
-        self._signs = frd_signs(values['message_frame'])
-        max_rates = np.array([thruster.max_rate for thruster in self.vehicle.thrusters])
-        self._step = np.where(max_rates > 0.0, max_rates / values['rate'], np.inf)  # [N]
-        self._fallback_velocity = self._signs * (*values['fallback_velocity'], 0.0, 0.0, 0.0)
-        self._fallback_limits = self._bounds(self._fallback_velocity)
-        self._wrench_timeout, self._velocity_timeout, self._current_timeout = (
-            round(values.get(f'{name}_timeout', 0.0) * 1e9)
-            for name in ('wrench', 'odometry', 'current'))
+    def _apply(self, changes: list[Parameter]) -> None:
+        """Put what the check has built in force from the next tick on."""
+        self._description = self._checked
+        self._allocator = Allocator.of(self._description, before=self._allocator)
+        values = self._description.parameters.values
         self._outputs.publish_individually(values['publish_individual'])
-        self._tick_period = _period(values['rate'])
-        if self._timer is not None and self._timer.timer_period_ns != self._tick_period:
-            self._timer.timer_period_ns = self._tick_period
-            self._last_tick = None  # the tick that comes cannot be late
-            if self._timer.time_until_next_call() > self._tick_period:
+        period = round(1e9 / values['rate'])  # [ns]
+        if self._timer.timer_period_ns != period:
+            self._timer.timer_period_ns = period
+            self._last_time = None  # the tick that comes cannot be late
+            if self._timer.time_until_next_call() > period:
                 self._timer.reset()
 
     # Inputs
@@ -187,86 +174,34 @@ class ThrustAllocator(Node):
 
     def _on_timer(self) -> None:
         now = self._now()
-        late = self._last_tick is not None and now - self._last_tick > LATE * self._tick_period
-        self._last_tick = now
+        late = (self._last_time is not None
+                and now - self._last_time > LATE * self._timer.timer_period_ns)
+        self._last_time = now
         if late:
-            self._period.late += 1
+            self._tally.late += 1
             self._after_messages.trigger()  # so that what has come meanwhile is taken first
         else:
             self._tick()
 
     def _tick(self) -> None:
         start = time.perf_counter()
-        now = self._now()
-        limits = self._limits(now)
-        wrench = self._live_wrench(now)
-        if wrench is not None and self._enabled:
-            self._allocate(wrench, rate_limited(limits, self._setpoints, self._step))
-        else:
-            self._findings.note('solver', '')
-            self._publish(limits, np.zeros_like(self._setpoints), np.zeros(6),
-                          np.zeros(6) if wrench is None else wrench)
-        self._period.times.append(time.perf_counter() - start)
+        tick = self._allocator.tick(self._inputs, self._now(), self._enabled)
+        self._send(tick)
+        self._findings.note_tick(tick)
+        if tick.allocation is not None and tick.allocation.status == 'interrupted':
+            self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
+        self._tally.count(tick, time.perf_counter() - start)
 
-    def _limits(self, now: int) -> np.ndarray:
-        """Return the limits at the present velocity, and note what is wrong with it."""
-        received, timeout = self._inputs.velocity, self._velocity_timeout
-        through_water, ignored = self._inputs.velocity_through_water(now, self._current_timeout)
-        self._findings.note('current', f'current ignored: {ignored}' if ignored else '')
-        if received is None:
-            self._findings.note(
-                'odometry', 'no odometry yet: using fallback_velocity' if timeout else '')
-            self._velocity = self._fallback_velocity
-            return self._fallback_limits.copy()
-        self._velocity = self._signs * through_water
-        limits = self._bounds(self._velocity)
-        stale = received.age(now) > timeout
-        text = ''
-        if stale and timeout:
-            since = ('since the clock went back' if received.time == NEVER
-                     else f'for {_age(received, now)} s')
-            text = f'no odometry {since}: using fallback_velocity where it is tighter'
-        self._findings.note('odometry', text)
-        if stale:
-            limits[0] = np.maximum(limits[0], self._fallback_limits[0])
-            limits[1] = np.minimum(limits[1], self._fallback_limits[1])
-        return limits
-
-    def _live_wrench(self, now: int) -> np.ndarray | None:
-        """Return the command in frd axes, or None if none counts, and note a stop."""
-        received = self._inputs.wrench
-        live = received is not None and received.age(now) <= self._wrench_timeout
-        self._findings.note('wrench', '' if live else 'no wrench: zero setpoints')
-        self._findings.note('enable', '' if self._enabled else 'disabled: zero setpoints')
-        return self._signs * received.values if live else None
-
-    def _allocate(self, wrench: np.ndarray, limits: np.ndarray) -> None:
-        allocation = self._problem.solve(wrench, limits)
-        self._publish(limits, allocation.thrusts, allocation.achieved, allocation.unallocated)
-        self._period.iterations.append(allocation.iterations)
-        self._period.newest = allocation
-        trouble = '' if allocation.solved else (
-            f'OSQP reports {allocation.status}: setpoints inside the limits, but perhaps not the '
-            'best')
-        self._findings.note('solver', trouble, Level.ERROR)
-        self._period.trouble = trouble or self._period.trouble
-        if allocation.status == 'interrupted':  # OSQP swallows a SIGINT that comes while it works
-            self.interrupted = True
-
-    def _publish(self, limits: np.ndarray, thrusts: np.ndarray, achieved: np.ndarray,
-                 unallocated: np.ndarray) -> None:
-        """Publish one tick; wrenches are in frd axes."""
-        self._limits_now, self._setpoints = limits, thrusts
-        self._outputs.publish(
-            limits, thrusts, self._signs * achieved, self._signs * unallocated,
-            self.vehicle.thrusters, lambda: self._bounds.flow(self._velocity))
+    def _send(self, tick: Tick) -> None:
+        self._last_tick = tick
+        self._outputs.publish(tick, self.vehicle.thrusters)
 
     def stop(self) -> None:
         """Publish zero setpoints for the last time and wait until they have been delivered."""
         self._timer.cancel()
-        zeros = np.zeros_like(self._setpoints)
+        self._inputs.wrench = None
         try:
-            self._publish(self._limits(self._now()), zeros, np.zeros(6), np.zeros(6))
+            self._send(self._allocator.tick(self._inputs, self._now()))
         except Exception:  # what has ended the node may lie in there: zeros all the same
             self._outputs.publish_zero_setpoints()
         self._outputs.wait_until_delivered()
@@ -275,10 +210,10 @@ class ThrustAllocator(Node):
     # Reports
 
     def _report(self) -> None:
-        """Look for what no tick can see, and publish the diagnostics of the last period."""
-        period, self._period = self._period, Period()
+        """Look for what no tick can see, and publish the diagnostics since the last report."""
+        tally, self._tally = self._tally, Tally()
         now, inputs = self._now(), self._inputs
-        vehicle, allocation = self.vehicle, period.newest
+        vehicle, allocation = self.vehicle, tally.newest
         for topic in ('cmd_wrench', 'thruster_setpoints'):
             count = self.count_publishers(self.resolve_topic_name(topic))
             self._findings.note(
@@ -293,32 +228,22 @@ class ThrustAllocator(Node):
         self._findings.note('shortfall', shortfall(allocation, vehicle) if allocation else '')
 
         level, text = self._findings.overall()
-        if period.trouble and level < Level.ERROR:
-            level, text = Level.ERROR, f'{period.trouble}; {text}'
+        if tally.trouble and level < Level.ERROR:
+            level, text = Level.ERROR, f'{tally.trouble}; {text}'
         self._diagnostics_publisher.publish(DiagnosticArray(
             header=Header(stamp=self.get_clock().now().to_msg()),
             status=[status_message(f'{self.get_name()}: allocation', level, text, {
-                'age of wrench [s]': _age(inputs.wrench, now),
-                'age of odometry [s]': _age(inputs.velocity, now),
-                **allocation_figures(allocation, vehicle), **period.figures(),
+                'age of wrench [s]': age_in_seconds(inputs.wrench, now),
+                'age of odometry [s]': age_in_seconds(inputs.velocity, now),
+                **allocation_figures(allocation, vehicle), **tally.figures(),
                 **{f'dropped: {cause}': str(n) for cause, n in sorted(inputs.dropped.items())},
             })]))
 
     def _draw(self) -> None:
         """Publish a picture of the last tick, if anybody looks."""
-        if self._marker_publisher.get_subscription_count():
+        if self._last_tick is not None and self._marker_publisher.get_subscription_count():
             self._marker_publisher.publish(thruster_markers(
-                self.vehicle.thrusters, self._setpoints, self._limits_now, self._signs[:3],
-                self._described.values['marker_frame'], self.get_clock().now().to_msg()))
-
-
-def _period(rate: float) -> int:
-    """Return the period of a rate [Hz] in ns."""
-    if 1e9 / rate >= 2.0**63:
-        raise ParameterError.wrong('rate', rate, 'large enough for its period to fit a clock')
-    return round(1e9 / rate)
-
-
-def _age(received: Received | None, now: int) -> str:
-    return 'none' if received is None or received.time == NEVER else (
-        f'{received.age(now) * 1e-9:.1f}')
+                self.vehicle.thrusters, self._last_tick.thrusts, self._last_tick.limits,
+                self._allocator.signs[:3],
+                self._description.parameters.values['marker_frame'],
+                self.get_clock().now().to_msg()))

@@ -1,25 +1,23 @@
 """The topics that carry each tick's result, in the units and under the names that users want."""
 
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import time
 
 from geometry_msgs.msg import Wrench
-import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
-from thrust_allocator.physics.bollard_equivalent import bollard_equivalent
-from thrust_allocator.ros.messages import array_message, fill_wrench
+from thrust_allocator.physics.flow import Flow
 from thrust_allocator.physics.vehicle import Thruster
+from thrust_allocator.ros.messages import array_message, fill_wrench
+from thrust_allocator.tick import Tick
 
 OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 ACKNOWLEDGE = 0.2  # the longest wait for the last setpoints to be acknowledged [s]
-
-Flow = Sequence[tuple[float, float]]  # of each thruster, along and across its thrust axis [m/s]
 
 
 class Outputs:
@@ -59,23 +57,13 @@ class Outputs:
                 publisher.publish(Float64())
         self._individually = on
 
-    def publish(self, limits: np.ndarray, thrusts: np.ndarray, achieved: np.ndarray,
-                unallocated: np.ndarray, thrusters: Sequence[Thruster],
-                flow: Callable[[], Flow]) -> None:
-        """
-        Publish one tick.
-
-        :param limits: (2, p), row 0 lower, row 1 upper [N].
-        :param thrusts: (p,) in the flow [N].
-        :param achieved: (6,) in the axes of the messages [N, N*m].
-        :param unallocated: (6,) in the axes of the messages [N, N*m].
-        :param flow: gives the motion of the thrusters through the water, where it is needed.
-        """
-        wanted = thrusts.tolist()
-        self._limits.data = array('d', limits.tobytes())
-        self._setpoints.data = array('d', self._in_unit(wanted, thrusters, flow))
-        fill_wrench(self._achieved, achieved)
-        fill_wrench(self._unallocated, unallocated)
+    def publish(self, tick: Tick, thrusters: Sequence[Thruster]) -> None:
+        """Publish one tick of these thrusters."""
+        wanted = tick.thrusts.tolist()
+        self._limits.data = array('d', tick.limits.tobytes())
+        self._setpoints.data = array('d', self._in_unit(wanted, thrusters, tick.flow))
+        fill_wrench(self._achieved, tick.achieved)
+        fill_wrench(self._unallocated, tick.unallocated)
         self._limits_publisher.publish(self._limits)
         self._setpoints_publisher.publish(self._setpoints)
         self._achieved_publisher.publish(self._achieved)
@@ -102,21 +90,20 @@ class Outputs:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
 
 
-def _newton(thrusts: list[float], thrusters: Sequence[Thruster],
-            flow: Callable[[], Flow]) -> list[float]:
+def _newton(thrusts: list[float], thrusters: Sequence[Thruster], flow: Flow) -> list[float]:
     return thrusts
 
 
 def _bollard_newton(thrusts: list[float], thrusters: Sequence[Thruster],
-                    flow: Callable[[], Flow]) -> list[float]:
-    return [bollard_equivalent(thrust, thruster.loss, thruster.bollard_thrust, *motion)
-            for thrust, thruster, motion in zip(thrusts, thrusters, flow())]
+                    flow: Flow) -> list[float]:
+    return [one.model.bollard_equivalent(thrust, *motion)
+            for thrust, one, motion in zip(thrusts, thrusters, flow)]
 
 
 def _bollard_fraction(thrusts: list[float], thrusters: Sequence[Thruster],
-                      flow: Callable[[], Flow]) -> list[float]:
-    return [equivalent / abs(thruster.bollard_thrust[equivalent > 0.0]) if equivalent else 0.0
-            for equivalent, thruster in zip(_bollard_newton(thrusts, thrusters, flow), thrusters)]
+                      flow: Flow) -> list[float]:
+    return [one.model.bollard_fraction(thrust, *motion)
+            for thrust, one, motion in zip(thrusts, thrusters, flow)]
 
 
 # What a setpoint may stand for: the thrust wanted in the flow [N], or what a driver calibrated at

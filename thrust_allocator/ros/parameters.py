@@ -6,13 +6,15 @@ from typing import Any
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
-from rclpy.parameter import Parameter as RosParameter
+from rclpy.parameter import Parameter
+from thrust_allocator.parameters.build import describe, Description
+from thrust_allocator.parameters.check import Parameters
+from thrust_allocator.parameters.definition import Definition
 from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.parameters.types import as_real, Flag, ParameterError, Real, Reals
-from thrust_allocator.parameters.table import Parameter, Parameters, read_parameters
 
 
-def take_overrides(node: Node) -> Parameters:
+def take_overrides(node: Node) -> Description:
     """
     Check what the command line and parameter files say for a node that has declared all of it.
 
@@ -29,7 +31,7 @@ def take_overrides(node: Node) -> Parameters:
         raise ParameterError(
             'thruster_names: is missing, must be a list of names; does the top key of the '
             f"parameter file match the node's name, {node.get_fully_qualified_name()}?")
-    return read_parameters(own)
+    return describe(own)
 
 
 def declare(node: Node, parameters: Parameters) -> None:
@@ -39,7 +41,7 @@ def declare(node: Node, parameters: Parameters) -> None:
             name, value, descriptor(parameters.definitions[name]), ignore_override=True)
 
 
-def descriptor(definition: Parameter) -> ParameterDescriptor:
+def descriptor(definition: Definition) -> ParameterDescriptor:
     """Return the ROS description of a parameter: meaning, unit, range, whether it is live."""
     unit = f' [{definition.unit}]' if definition.unit else ''
     ranges = []
@@ -51,7 +53,7 @@ def descriptor(definition: Parameter) -> ParameterDescriptor:
         read_only=not definition.live, floating_point_range=ranges)
 
 
-def coerced(changes: list[RosParameter], parameters: Parameters) -> list[RosParameter]:
+def coerced(changes: list[Parameter], parameters: Parameters) -> list[Parameter]:
     """
     Return changes with whole numbers, and words such as 1.0e4, made real where that is meant.
 
@@ -64,27 +66,22 @@ def coerced(changes: list[RosParameter], parameters: Parameters) -> list[RosPara
     return [_coerced(change, parameters.definitions.get(change.name)) for change in changes]
 
 
-def _coerced(change: RosParameter, definition: Parameter | None) -> RosParameter:
+def _coerced(change: Parameter, definition: Definition | None) -> Parameter:
     value = plain(change.value)
     try:
         if definition and isinstance(definition.type, Real):
-            return RosParameter(change.name, value=as_real(value))
+            return Parameter(change.name, value=as_real(value))
         if definition and isinstance(definition.type, Reals) and isinstance(value, list):
-            return RosParameter(change.name, value=[as_real(item) for item in value])
+            return Parameter(change.name, value=[as_real(item) for item in value])
     except ValueError:
         pass  # the check that follows says why not
     return change
 
 
-def changed(changes: list[RosParameter], parameters: Parameters) -> Parameters:
-    """
-    Return the parameters with some of them changed.
-
-    :raises ParameterError: if the whole would describe no vehicle.
-    """
-    return read_parameters({**parameters.values, **{
-        change.name: plain(change.value) for change in changes
-        if change.name in parameters.values}})
+def changes_of(changes: list[Parameter], parameters: Parameters) -> dict[str, Any]:
+    """Return the changed values by name, those of the vehicle's parameters only."""
+    return {change.name: plain(change.value) for change in changes
+            if change.name in parameters.values}
 
 
 def plain(value: Any) -> Any:

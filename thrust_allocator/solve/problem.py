@@ -4,15 +4,18 @@ from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.solve.active_set import ActiveSet
-from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.solve.osqp_solver import Solver
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.solve.active_set import ActiveSet
+from thrust_allocator.solve.osqp_solver import Solver
 
 TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
 ROUNDING = 4.0 * np.finfo(float).eps  # of the whitened gradient, times thrusters and condition
 MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
 WORST_CONDITION = 1e13  # of the Hessian; beyond it double precision has nothing left to give
+
+
+class IllConditioned(ValueError):
+    """Weights and geometry that leave double precision nothing to give."""
 
 
 class Allocation(NamedTuple):
@@ -53,7 +56,7 @@ class AllocationProblem:
         """
         Set up the solver.
 
-        :raises ParameterError: if the weights and the geometry make the problem too
+        :raises IllConditioned: if the weights and the geometry make the problem too
             ill-conditioned for double precision.
         """
         self._essence = _essence(vehicle)
@@ -77,8 +80,8 @@ class AllocationProblem:
         # With most thrusters at a bound, the equations for the rest may be worse than the Hessian
         worst = np.sqrt(WORST_CONDITION)
         if singular[0] > worst * singular[-1] or np.linalg.norm(gain, 2) > worst:
-            raise ParameterError(
-                f'wrench_weights: are up to {max(vehicle.wrench_weights):g} while thrusters weigh '
+            raise IllConditioned(
+                f'are up to {max(vehicle.wrench_weights):g} while thrusters weigh '
                 f'down to {smallest:g}; with these positions that is beyond double precision, must '
                 'lie closer together')
         self._thrust_weights = thrust_weights

@@ -8,11 +8,11 @@ from pathlib import Path
 import shlex
 import sys
 
-from thrust_allocator.solve.problem import AllocationProblem
-from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.parameters.build import describe
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.parameters.table import read_parameters
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.study import findings
 from thrust_allocator.study.directions import most_telling
 from thrust_allocator.study.errors import missing, StudyError
@@ -22,7 +22,6 @@ from thrust_allocator.study.options import nearest, Parser, parser
 from thrust_allocator.study.progress import Progress
 from thrust_allocator.study.sweep import DRIVERS, without
 from thrust_allocator.study.tables import write_grid
-from thrust_allocator.physics.vehicle import Vehicle
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -79,16 +78,14 @@ def _vehicles(files: Sequence[Path], node: str) -> dict[str, Vehicle]:
             raise StudyError(f'{file}: goes by the name {name} like another one, must have a name '
                              'of its own')
         try:
-            parameters = read_parameters(read_parameter_file(file, node))
-            vehicle = Vehicle.from_parameters(parameters)
-            AllocationProblem(vehicle)
+            description = describe(read_parameter_file(file, node))
         except ParameterError as error:
             message = str(error)
             raise ParameterError(message if str(file) in message else f'{file}: {message}') \
                 from None
-        for warning in (*parameters.warnings, *vehicle.warnings()):
+        for warning in description.warnings:
             print(f'study: {name}: {warning}', file=sys.stderr)
-        vehicles[name] = vehicle
+        vehicles[name] = description.vehicle
     return vehicles
 
 

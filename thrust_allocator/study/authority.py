@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import block_diag
-from thrust_allocator.study.errors import StudyError
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.study.errors import StudyError
 
 HELD = {'heavier': 'DOFs of equal or larger weight hold', 'all': 'all controlled DOFs hold'}
 # The smallest HiGHS takes; of thrusts relative to the largest Bollard thrust, and of rows of norm 1

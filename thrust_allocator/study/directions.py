@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.physics.models.propeller import PropellerLoss
+from thrust_allocator.physics.models import MODELS
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 ANGLES = 61  # from 0 to 180 degrees
@@ -23,9 +23,8 @@ class Directions(NamedTuple):
 def most_telling(vehicle: Vehicle) -> Thruster:
     """Return the first thruster whose limits depend on the direction most: a propeller first."""
     in_use = [thruster for thruster in vehicle.thrusters if thruster.enabled]
-    ranked = sorted(in_use or vehicle.thrusters, key=lambda thruster: (
-        not isinstance(thruster.loss, PropellerLoss), thruster.loss is None))
-    return ranked[0]
+    return min(in_use or vehicle.thrusters,
+               key=lambda thruster: list(MODELS).index(thruster.model.NAME))
 
 
 def directions(thruster: Thruster, largest_speed: float) -> Directions:

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import joblib
 import numpy as np
+from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.study.authority import Authority
 from thrust_allocator.study.errors import missing, StudyError
 from thrust_allocator.study.manoeuvre import Manoeuvre
 from thrust_allocator.study.sweep import Sweep, sweep, without
-from thrust_allocator.physics.vehicle import Vehicle
 
 # Speeds in a row that are evaluated together. It does not depend on the number of workers: the
 # allocator starts from its last optimum, so the numbers repeat to the last bit whatever runs them.

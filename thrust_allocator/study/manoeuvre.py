@@ -7,9 +7,9 @@ import math
 import numpy as np
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.study.authority import Authority
 from thrust_allocator.study.errors import StudyError
-from thrust_allocator.physics.vehicle import Vehicle
 
 DRAG = 40.0  # surge force that holds a speed, per speed squared: the paper's test [N*s^2/m^2]
 PITCH = 50.0  # nose up: the paper's test [N*m]

@@ -8,8 +8,8 @@ from pathlib import Path
 import re
 from typing import NoReturn
 
-from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.parameters.file import NODE_NAME
+from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.study.manoeuvre import DRAG, PITCH, unit
 
 FASTEST = 50.0  # what the node takes for a velocity, too [m/s]

@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 import numpy as np
 from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import Directions
 from thrust_allocator.study.findings import named
@@ -16,7 +17,6 @@ from thrust_allocator.study.manoeuvre import unit
 from thrust_allocator.study.style import (
     BOUNDS, finish, line, look, over_speed, panels, save)
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
-from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 SPEED = 'speed through the water (m/s)'
 WORTH_SHOWN = 0.5  # a DOF is drawn if an error gets larger than this [N, N*m]

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import joblib
 import numpy as np
-from thrust_allocator.benchmark.table import table
+from thrust_allocator.markdown import table
 from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Thruster
 from thrust_allocator.study import findings, pictures, tables
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import directions
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import Manoeuvre, unit
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, shares, Sweep, without
-from thrust_allocator.physics.vehicle import Thruster
 
 ROWS = 19  # of a table over speed, at most
 FRAME = 'Axes: x forward, y starboard, z down; positive pitch is nose up.'

@@ -5,12 +5,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from thrust_allocator.solve.problem import AllocationProblem
-from thrust_allocator.physics.bollard_equivalent import thrust_in_flow
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.flow import FlowAtThrusters
-from thrust_allocator.physics.models.tunnel import TunnelLoss
+from thrust_allocator.physics.models import MODELS
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
 
 ALLOCATORS = {'pseudo-inverse': 'pseudo-inverse, clamped',
               'fixed bounds': 'QP, bounds fixed at Bollard',
@@ -84,8 +83,8 @@ class Drivers:
         :return: (2, p) [N].
         """
         by_curve = [
-            thrust_in_flow(setpoint, thruster.loss, thruster.bollard_thrust, along, across)
-            for setpoint, thruster, (along, across) in zip(
+            thruster.model.thrust_in_flow(setpoint, *motion)
+            for setpoint, thruster, motion in zip(
                 setpoints.tolist(), self._thrusters, self._flow(velocity))]
         return np.array([np.clip(setpoints, *self._available(velocity)), by_curve])
 
@@ -122,19 +121,19 @@ def shares(vehicle: Vehicle, thrusts: np.ndarray, dof: int) -> dict[str, np.ndar
 
     :param thrusts: (n, p) [N].
     :param dof: index into DOFS.
-    :return: shares (n,), NaN where there is nothing to share [%]: of the tunnel thrusters together
-        and the propellers together, or, where only one kind plays a part, of each thruster that
-        does, those that give the same all the way under one name.
+    :return: shares (n,), NaN where there is nothing to share [%]: of all thrusters of a model
+        together, or, where only one model plays a part, of each thruster that does, those that
+        give the same all the way under one name.
     """
     parts = vehicle.configuration_matrix[dof] * thrusts
     total = parts.sum(axis=1, keepdims=True)
     percent = 100.0 * np.divide(parts, total, out=np.full_like(parts, np.nan),
                                 where=np.abs(total) > SHARED)
     acting = np.abs(parts).max(axis=0) > SHARED
-    tunnels = np.array([isinstance(one.loss, TunnelLoss) for one in vehicle.thrusters])
-    if (acting & tunnels).any() and (acting & ~tunnels).any():
-        return {name: percent[:, those].sum(axis=1)
-                for name, those in (('tunnels', tunnels), ('propellers', ~tunnels))}
+    models = np.array([one.model.NAME for one in vehicle.thrusters])
+    playing = [kind for name, kind in reversed(MODELS.items()) if name in models[acting]]
+    if len(playing) > 1:
+        return {kind.PLURAL: percent[:, models == kind.NAME].sum(axis=1) for kind in playing}
     groups: list[list[int]] = []
     for i in np.flatnonzero(acting):
         for group in groups:

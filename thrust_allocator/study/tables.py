@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import Directions
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import unit
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
-from thrust_allocator.physics.vehicle import Vehicle
 
 Row = Sequence[object]
 

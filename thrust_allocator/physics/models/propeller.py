@@ -1,74 +1,64 @@
-"""Thrust limits of a propeller in oblique flow: Kostenko and Tolstonogov (2017), eq. 3.7-3.11."""
+"""A propeller in oblique flow: Kostenko and Tolstonogov (2017), eq. 3.7-3.11."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import atan2, cos, hypot, pi, sin
+from functools import cached_property
+from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import Any
 
-from thrust_allocator.parameters.types import LARGEST, ParameterError
+from thrust_allocator.physics.models.model import Limits, LimitsLaw, ThrusterModel
 
 SECOND_CRITICAL_ANGLE_MAX = 2.0 * pi / 3.0  # [rad], ours: keeps it well below pi
 
 
 @dataclass(frozen=True)
-class PropellerLoss:
-    """How a propeller loses thrust in a flow; pairs are (reverse, forward)."""
+class Propeller(ThrusterModel):
+    """A propeller, which loses thrust by its speed and its angle to the flow."""
 
-    speed_loss: tuple[float, float]  # C [N*s/m]
+    NAME = 'propeller'
+    PLURAL = 'propellers'
+
+    bollard_thrust: Limits  # T_0 (reverse <= 0, forward >= 0) [N]
+    speed_loss: tuple[float, float]  # C (reverse, forward) [N*s/m]
     critical_angle_slope: float  # a* [rad*s/m]
     critical_angle_min: float  # [rad]
     second_critical_angle_offset: float  # c_2 [rad]
     second_critical_angle_slope: float  # b* [rad*s/m]
-    opposed_loss: tuple[float, float]  # C_a [N*s/m]
+    opposed_loss: tuple[float, float]  # C_a (reverse, forward) [N*s/m]
     opposed_floor: float  # phi, share of Bollard thrust that opposed flow cannot take [-]
 
     @classmethod
-    def from_parameters(cls, name: str, values: Mapping[str, Any]) -> 'PropellerLoss':
-        """
-        Build it from the checked parameters of a thruster and the water's density.
-
-        C is given, or follows from the propeller: C = a_1 rho Omega_max D^3 [N*s/m] by eq. 3.8,
-        3.10 and 3.11 together, where a_1 is the slope of the thrust coefficient over the advance
-        ratio. In reverse C is scaled with the Bollard limits: thrust vanishes at the same speed.
-
-        :raises ParameterError: if the propeller gives a C beyond what speed_loss may be.
-        """
-        if 'speed_loss' in values:
-            speed_loss = values['speed_loss']
-        else:
-            forward = (values['propeller.thrust_slope'] * values['water_density']
-                       * values['propeller.max_revolutions'] * values['propeller.diameter']**3)
-            reverse_limit, forward_limit = values['bollard_thrust']
-            speed_loss = (forward * -reverse_limit / forward_limit, forward)
-            if max(speed_loss) > LARGEST:
-                raise ParameterError.wrong(f'thrusters.{name}.propeller', speed_loss,
-                                           f'such that speed_loss is at most {LARGEST:g}')
+    def from_values(cls, values: Mapping[str, Any]) -> 'Propeller':
+        """Build it from checked values; C is given, or follows from the propeller's data."""
+        speed_loss = values.get('speed_loss') or speed_loss_of_propeller(
+            values['propeller.thrust_slope'], values['water_density'],
+            values['propeller.max_revolutions'], values['propeller.diameter'],
+            values['bollard_thrust'])
         return cls(
-            speed_loss, values['critical_angle_slope'], values['critical_angle_min'],
-            values['second_critical_angle_offset'], values['second_critical_angle_slope'],
-            values['opposed_loss'], values['opposed_floor'])
+            values['bollard_thrust'], speed_loss, values['critical_angle_slope'],
+            values['critical_angle_min'], values['second_critical_angle_offset'],
+            values['second_critical_angle_slope'], values['opposed_loss'],
+            values['opposed_floor'])
 
-    def law(self, bollard_thrust: tuple[float, float]) -> Callable[
-            [float, float], tuple[float, float]]:
+    @cached_property
+    def limits(self) -> LimitsLaw:
         """
-        Return the limits as a function of the flow.
+        The limits as a function of the flow.
 
         Eq. 3.11 up to the first critical incoming angle, no loss up to the second one, and beyond
         it the loss in opposed flow after Kim and Chung (2006). Continuous, never above Bollard
         thrust, never across zero; not monotone in speed, by the paper's own law.
-
-        :param bollard_thrust: limits at rest (reverse <= 0, forward >= 0) [N].
-        :return: function of the thruster's speed along its thrust axis and across it, the latter
-            >= 0 [m/s], that gives (lower <= 0, upper >= 0) [N].
         """
         reverse, forward = (
             _sense(bollard, axial, opposed, self.opposed_floor) for bollard, axial, opposed
-            in zip((-bollard_thrust[0], bollard_thrust[1]), self.speed_loss, self.opposed_loss))
+            in zip((-self.bollard_thrust[0], self.bollard_thrust[1]), self.speed_loss,
+                   self.opposed_loss))
         first_slope, first_min = self.critical_angle_slope, self.critical_angle_min
         second_start = pi / 2 + self.second_critical_angle_offset
         second_slope = self.second_critical_angle_slope
 
-        def limits(along: float, across: float) -> tuple[float, float]:
+        def limits(along: float, one: float, other: float = 0.0) -> Limits:
+            across = hypot(one, other)
             speed = hypot(along, across)
             angle = atan2(across, along)  # arccos of the normalised product is noisy at 0 and pi
             first = max(pi / 2 - first_slope * speed, first_min)
@@ -78,6 +68,45 @@ class PropellerLoss:
                     forward(angle, speed, first, second))
 
         return limits
+
+    def thrust_in_flow(self, equivalent: float, *flow: float) -> float:
+        """Return e - dL sqrt(e / T_0), with dL the loss at full speed of rotation [N]."""
+        if equivalent == 0.0:
+            return equivalent
+        side, e = (1, equivalent) if equivalent > 0.0 else (0, -equivalent)
+        full = abs(self.bollard_thrust[side])
+        lost = full - abs(self.limits(*flow)[side])
+        thrust = max(e - lost * sqrt(e / full), 0.0)
+        return thrust if side else -thrust
+
+    def bollard_equivalent(self, thrust: float, *flow: float) -> float:
+        """Return the inverse of `thrust_in_flow`, the root of a quadratic in sqrt(e) [N]."""
+        if thrust == 0.0:
+            return thrust
+        side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
+        full = abs(self.bollard_thrust[side])
+        lost = full - abs(self.limits(*flow)[side])
+        half = 0.5 * lost / sqrt(full)  # tau = e - 2 half sqrt(e)
+        e = min((half + sqrt(half * half + tau))**2, full)  # which rounding could exceed
+        return e if side else -e
+
+
+def speed_loss_of_propeller(thrust_slope: float, water_density: float, max_revolutions: float,
+                            diameter: float, bollard_thrust: Limits) -> tuple[float, float]:
+    """
+    Return C = a_1 rho Omega_max D^3 by eq. 3.8, 3.10 and 3.11 together, (reverse, forward) [N*s/m].
+
+    In reverse it is scaled with the Bollard limits: thrust vanishes at the same speed.
+
+    :param thrust_slope: a_1, fall of the thrust coefficient over the advance ratio (eq. 3.8) [-].
+    :param water_density: rho [kg/m^3].
+    :param max_revolutions: Omega_max [rev/s].
+    :param diameter: D [m].
+    :param bollard_thrust: (reverse <= 0, forward > 0) [N].
+    """
+    forward = thrust_slope * water_density * max_revolutions * diameter**3
+    reverse_limit, forward_limit = bollard_thrust
+    return forward * -reverse_limit / forward_limit, forward
 
 
 def _sense(bollard: float, axial: float, opposed: float, floor: float) -> Callable[

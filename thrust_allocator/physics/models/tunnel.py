@@ -1,42 +1,66 @@
-"""Thrust limits of a tunnel thruster at speed: Kostenko and Tolstonogov (2017), eq. 3.12, 3.13."""
+"""A tunnel thruster at speed: Kostenko and Tolstonogov (2017), eq. 3.12, 3.13."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp
+from functools import cached_property
+from math import exp, hypot, log
 from typing import Any
+
+from scipy.special import wrightomega
+from thrust_allocator.physics.models.model import Limits, LimitsLaw, ThrusterModel
 
 
 @dataclass(frozen=True)
-class TunnelLoss:
-    """How a tunnel thruster loses thrust when the vehicle moves across its jet."""
+class Tunnel(ThrusterModel):
+    """A thruster in a tunnel, which loses thrust when the vehicle moves across its jet."""
 
+    NAME = 'tunnel'
+    PLURAL = 'tunnels'
+
+    bollard_thrust: Limits  # T_0 (reverse <= 0, forward >= 0) [N]
     decay: float  # c; published values are 0.3 to 4 (Palmer et al. 2008) [-]
     jet_mass: float  # rho S, mass of a metre of the jet [kg/m]; only its product with c matters
 
     @classmethod
-    def from_parameters(cls, name: str, values: Mapping[str, Any]) -> 'TunnelLoss':
-        """Build it from the checked parameters of a thruster and the water's density."""
-        return cls(values['decay'], values['water_density'] * values['area'])
+    def from_values(cls, values: Mapping[str, Any]) -> 'Tunnel':
+        """Build it from checked values, `bollard_thrust`, `decay`, `area` and `water_density`."""
+        return cls(values['bollard_thrust'], values['decay'],
+                   values['water_density'] * values['area'])
 
-    def law(self, bollard_thrust: tuple[float, float]) -> Callable[
-            [float, float], tuple[float, float]]:
-        """
-        Return the limits T_0 exp(-c v_t^2 / v_jet^2), v_jet^2 = T_0 / (rho S), as a function.
+    @cached_property
+    def limits(self) -> LimitsLaw:
+        """T_0 exp(-c v_t^2 / v_jet^2) (eq. 3.13), v_jet^2 = T_0 / (rho S) (eq. 3.12)."""
+        reverse, forward = self.bollard_thrust
 
-        :param bollard_thrust: limits at rest (reverse <= 0, forward >= 0) [N].
-        :return: function of the thruster's speed along its thrust axis, which does not matter, and
-            v_t across it [m/s], that gives (lower <= 0, upper >= 0) [N].
-        """
-        reverse, forward = bollard_thrust
-
-        def limits(along: float, across: float) -> tuple[float, float]:
-            load = self.load(across)
+        def limits(along: float, one: float, other: float = 0.0) -> Limits:
+            load = self._load(one, other)
             # A sense without thrust has none to lose
             return (reverse * exp(load / reverse) if reverse else 0.0,
                     forward * exp(-load / forward) if forward else 0.0)
 
         return limits
 
-    def load(self, across: float) -> float:
+    def thrust_in_flow(self, equivalent: float, along: float, one: float,
+                       other: float = 0.0) -> float:
+        """Return e exp(-c rho S v_t^2 / e) for an equivalent e, of its sign [N]."""
+        if equivalent == 0.0:
+            return equivalent
+        return equivalent * exp(-self._load(one, other) / abs(equivalent))
+
+    def bollard_equivalent(self, thrust: float, along: float, one: float,
+                           other: float = 0.0) -> float:
+        """Return the inverse of `thrust_in_flow`, by Wright's omega function [N]."""
+        if thrust == 0.0:
+            return thrust
+        side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
+        load = self._load(one, other)
+        # tau = e exp(-load / e): with y = load / e, y + ln y = ln(load / tau)
+        y = float(wrightomega(log(load) - log(tau)).real) if load > 0.0 else 0.0
+        e = load / y if y > 1.0 else tau * exp(y)  # neither overflows nor divides by 0
+        e = min(e, abs(self.bollard_thrust[side]))  # which rounding could exceed
+        return e if side else -e
+
+    def _load(self, one: float, other: float) -> float:
         """Return c rho S v_t^2 [N], which set against the thrust tells how much of it is left."""
+        across = hypot(one, other)
         return self.decay * self.jet_mass * across * across

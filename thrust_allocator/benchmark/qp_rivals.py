@@ -2,11 +2,11 @@
 
 import numpy as np
 import scipy.sparse
-from thrust_allocator.benchmark.peers import NARROW, Peer
+from thrust_allocator.benchmark.rivals import NARROW, Rival
 from thrust_allocator.physics.vehicle import Vehicle
 
 
-class Quadprog(Peer):
+class Quadprog(Rival):
     """quadprog on the box problem; it wants one constraint per bound, and no equal bounds."""
 
     name = 'quadprog'
@@ -34,7 +34,7 @@ class Quadprog(Peer):
         return thrusts
 
 
-class Daqp(Peer):
+class Daqp(Rival):
     """daqp on the box problem, one workspace for all ticks."""
 
     name = 'daqp'
@@ -55,7 +55,7 @@ class Daqp(Peer):
         return thrusts
 
 
-class CasadiQrqp(Peer):
+class CasadiQrqp(Rival):
     """
     CasADi's qrqp with the slack as variables.
 
@@ -89,7 +89,7 @@ class CasadiQrqp(Peer):
         return result['x'].full()[:self.count, 0]
 
 
-class Osqp(Peer):
+class Osqp(Rival):
     """OSQP as it is written first: tau and s as variables, default settings, warm start."""
 
     name = 'OSQP, with slack, warm'

@@ -4,13 +4,13 @@ from abc import ABC, abstractmethod
 from importlib import import_module
 
 import numpy as np
-from thrust_allocator.solve.problem import AllocationProblem
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.solve.problem import AllocationProblem
 
 NARROW = 1e-9  # bounds closer than this count as equal, for solvers that want them apart [N]
 
 
-class Peer(ABC):
+class Rival(ABC):
     """An allocator: `solve` returns thrusts, whatever it needs for that is its own time."""
 
     name: str
@@ -45,7 +45,7 @@ class Peer(ABC):
         """
 
 
-class Ours(Peer):
+class Ours(Rival):
     """This package: an active set found from the last one, certified by OSQP."""
 
     name = 'thrust_allocator'
@@ -61,7 +61,7 @@ class Ours(Peer):
         return allocation.thrusts
 
 
-class PseudoInverse(Peer):
+class PseudoInverse(Rival):
     """What most vehicles run: the weighted pseudo-inverse, its answer cut to the limits."""
 
     name = 'pseudo-inverse, clamped'
@@ -76,7 +76,7 @@ class PseudoInverse(Peer):
         return np.minimum(np.maximum(thrusts, limits[0]), limits[1])
 
 
-class BoundedLeastSquares(Peer):
+class BoundedLeastSquares(Rival):
     """SciPy's bounded-variable least squares, on [Q^1/2; R^1/2 B] x = [0; R^1/2 f]."""
 
     name = 'SciPy lsq_linear (BVLS)'
@@ -101,7 +101,7 @@ class BoundedLeastSquares(Peer):
         return thrusts
 
 
-class SequentialLeastSquares(Peer):
+class SequentialLeastSquares(Rival):
     """SciPy's SLSQP with the exact gradient, started from the last thrusts."""
 
     name = 'SciPy SLSQP'

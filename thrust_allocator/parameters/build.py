@@ -1,0 +1,88 @@
+"""What parameters describe: the vehicle, and its allocation problem set up."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from thrust_allocator.parameters.check import Parameters, read_parameters
+from thrust_allocator.parameters.file import NODE_NAME, read_parameter_file
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.physics.frames import DOFS, frd_signs
+from thrust_allocator.physics.models import MODELS
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
+from thrust_allocator.solve.problem import AllocationProblem, IllConditioned
+
+
+@dataclass(frozen=True)
+class Description:
+    """Checked parameters, and all that was built of them to check them."""
+
+    parameters: Parameters
+    vehicle: Vehicle
+    problem: AllocationProblem
+
+    @property
+    def warnings(self) -> list[str]:
+        """Return what a user should know of a description that is valid all the same."""
+        return [*self.parameters.warnings, *self.vehicle.warnings()]
+
+    def changed(self, changes: Mapping[str, Any]) -> 'Description':
+        """
+        Return the description with some values changed; the problem is kept where it serves still.
+
+        :param changes: by full dotted name.
+        :raises ParameterError: if the whole would describe no vehicle.
+        """
+        return _build(read_parameters({**self.parameters.values, **changes}), self.problem)
+
+
+def describe(given: Mapping[str, Any]) -> Description:
+    """
+    Check parameters and build what they describe.
+
+    :param given: values by full dotted name, as `parameters.file` or ROS 2 gives them.
+    :raises ParameterError: if they describe no vehicle.
+    """
+    return _build(read_parameters(given))
+
+
+def load_vehicle(path: str | Path, node: str = f'/{NODE_NAME}') -> Vehicle:
+    """
+    Return the vehicle that a ROS 2 parameter file describes; no ROS is needed.
+
+    :param path: the YAML file.
+    :param node: full name of the node whose parameters count, e.g. '/my_auv/thrust_allocator'.
+    :raises ParameterError: if the file cannot be read or describes no vehicle.
+    """
+    return describe(read_parameter_file(path, node)).vehicle
+
+
+def _build(parameters: Parameters, problem: AllocationProblem | None = None) -> Description:
+    vehicle = _vehicle(parameters)
+    try:
+        problem = problem.for_vehicle(vehicle) if problem else AllocationProblem(vehicle)
+    except IllConditioned as error:
+        raise ParameterError(f'wrench_weights: {error}') from None
+    return Description(parameters, vehicle, problem)
+
+
+def _vehicle(parameters: Parameters) -> Vehicle:
+    """Return the vehicle, turned into frd axes."""
+    values = parameters.values
+    return Vehicle(
+        tuple(_thruster(name, {**values, **parameters.of_thruster(name)})
+              for name in values['thruster_names']),
+        tuple(values[f'wrench_weights.{dof}'] for dof in DOFS))
+
+
+def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
+    """Build a thruster from its own parameters and those of the node."""
+    signs = frd_signs(values['vehicle_frame'])[:3]
+    direction = np.array(values['direction'])
+    direction = signs * direction / np.linalg.norm(direction)
+    return Thruster(
+        name, tuple((signs * values['position']).tolist()), tuple(direction.tolist()),
+        MODELS[values['model']].from_values(values), values['weight'], values['torque_ratio'],
+        values['max_rate'], values['cutoff'], values['enabled'])

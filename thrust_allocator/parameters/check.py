@@ -1,0 +1,140 @@
+"""The rules for a vehicle's parameters: what is missing, unknown, impossible or contradictory."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+import difflib
+from types import MappingProxyType
+from typing import Any
+
+from thrust_allocator.parameters.definition import Definition, REQUIRED
+from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.table import NODE, THRUSTER, THRUSTER_NAMES
+from thrust_allocator.parameters.types import LARGEST, ParameterError
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.physics.models import MODELS
+from thrust_allocator.physics.models.propeller import speed_loss_of_propeller
+
+LONGEST_PERIOD = 2.0**63  # that a clock can hold [ns]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """A vehicle's parameters, checked: no missing, unknown or impossible value among them."""
+
+    values: Mapping[str, Any]  # by full name, e.g. 'thrusters.up.weight'; defaults filled in
+    definitions: Mapping[str, Definition]  # of the same names
+    warnings: tuple[str, ...]
+
+    def of_thruster(self, name: str) -> dict[str, Any]:
+        """Return the values under `thrusters.<name>`, by the name that follows it."""
+        prefix = f'thrusters.{name}.'
+        return {key.removeprefix(prefix): value for key, value in self.values.items()
+                if key.startswith(prefix)}
+
+
+def read_parameters(given: Mapping[str, Any]) -> Parameters:
+    """
+    Check a vehicle's parameters and fill in the defaults.
+
+    :param given: values by full dotted name, as `parameters.file` or ROS 2 gives them.
+    :raises ParameterError: for the first value that is missing, unknown, of the wrong type or out
+        of range, and for values that contradict each other.
+    """
+    thrusters = _read(given, 'thruster_names', THRUSTER_NAMES)
+    definitions = {definition.name: definition for definition in (THRUSTER_NAMES, *NODE)}
+    if _read(given, 'velocity_type', definitions['velocity_type']) != 'odometry':
+        if 'current_timeout' in given:
+            raise ParameterError('current_timeout: is given, must be left out where velocity_type '
+                                 'is not odometry: no orientation, no current')
+        del definitions['current_timeout']
+    _check_thruster_names(given, thrusters)
+    for thruster in thrusters:
+        prefix = f'thrusters.{thruster}.'
+        for definition in (*THRUSTER, *_coefficients(given, prefix)):
+            definitions[prefix + definition.name] = definition
+
+    warnings = []
+    for name in [name for name in given if name not in definitions]:
+        mistake = ParameterError(f'{name}: is no parameter here{_nearest(name, definitions)}')
+        if name.split('.')[0] in ('thrusters', 'wrench_weights'):
+            raise mistake
+        warnings.append(f'{mistake}; it is ignored')
+    values = {name: _read(given, name, definition) for name, definition in definitions.items()}
+    _check_together(values, thrusters)
+    return Parameters(MappingProxyType(values), MappingProxyType(definitions),
+                      tuple(sorted(warnings)))
+
+
+def _read(given: Mapping[str, Any], name: str, definition: Definition) -> Any:
+    if name in given:
+        return definition.type.read(name, given[name])
+    if definition.default is REQUIRED:
+        raise ParameterError(f'{name}: is missing, must be {definition.type}')
+    return definition.default
+
+
+def _check_thruster_names(given: Mapping[str, Any], thrusters: tuple[str, ...]) -> None:
+    described = {name.split('.')[1] for name in given if name.startswith('thrusters.')}
+    for name in sorted(described - set(thrusters)):
+        raise ParameterError(f'thrusters.{name}: is not in thruster_names, must be one of '
+                             f'{", ".join(thrusters)}{_nearest(name, thrusters)}')
+    for name in thrusters:
+        if name not in described:
+            raise ParameterError(f'thrusters.{name}: is missing, must describe the thruster '
+                                 'that thruster_names lists')
+
+
+def _coefficients(given: Mapping[str, Any], prefix: str) -> tuple[Definition, ...]:
+    """Return the model's own parameters; of the groups that exclude each other the one given."""
+    name = prefix + 'model'
+    model = _read(given, name, next(one for one in THRUSTER if one.name == 'model'))
+    parameters = MODEL_PARAMETERS[MODELS[model]]
+    if not parameters.either:
+        return parameters.always
+    groups = {prefix + group[0].name.partition('.')[0]: group for group in parameters.either}
+    present = [name for name, group in groups.items()
+               if any(prefix + one.name in given for one in group)]
+    first, *others = groups
+    if not present:
+        raise ParameterError(f'{first}: is missing, must be {groups[first][0].type}; or give '
+                             f'{" or ".join(others)} instead')
+    if len(present) > 1:
+        raise ParameterError(f'{present[0]}: is given together with {present[1]}, must stand alone')
+    return parameters.always + groups[present[0]]
+
+
+def _check_together(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> None:
+    if 1e9 / values['rate'] >= LONGEST_PERIOD:
+        raise ParameterError.wrong('rate', values['rate'],
+                                   'large enough for its period to fit a clock')
+    if not any(values[f'wrench_weights.{dof}'] for dof in DOFS):
+        raise ParameterError('wrench_weights: are all 0, must leave at least one DOF controlled')
+    for thruster in thrusters:
+        if f'thrusters.{thruster}.propeller.diameter' in values:
+            _check_propeller(values, f'thrusters.{thruster}.')
+
+
+def _check_propeller(values: Mapping[str, Any], prefix: str) -> None:
+    """Refuse a propeller that gives no C, or one beyond what speed_loss may be."""
+    bollard_thrust = values[f'{prefix}bollard_thrust']
+    if bollard_thrust[1] == 0.0:
+        raise ParameterError.wrong(
+            f'{prefix}bollard_thrust', list(bollard_thrust),
+            '[reverse, forward] with forward > 0 where propeller is given; or give speed_loss')
+    speed_loss = speed_loss_of_propeller(
+        values[f'{prefix}propeller.thrust_slope'], values['water_density'],
+        values[f'{prefix}propeller.max_revolutions'], values[f'{prefix}propeller.diameter'],
+        bollard_thrust)
+    if max(speed_loss) > LARGEST:
+        raise ParameterError.wrong(f'{prefix}propeller', speed_loss,
+                                   f'such that speed_loss is at most {LARGEST:g}')
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    """Ask whether the most similar known name was meant: of the same group if there is one."""
+    group, _, last = name.rpartition('.')
+    siblings = {one.rpartition('.')[2]: one for one in known if one.rpartition('.')[0] == group}
+    for candidate, names in ((last, siblings), (name, {one: one for one in known})):
+        for close in difflib.get_close_matches(candidate, names, n=1):
+            return f'; did you mean {names[close]}?'
+    return ''

@@ -1,0 +1,73 @@
+"""What every thruster model answers: its limits in a flow, and what a motor driver must be told."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, ClassVar
+
+Limits = tuple[float, float]  # (lower <= 0, upper >= 0) [N]
+
+# Limits as a function of the thruster's speed through the water along its thrust axis and along
+# two axes across it [m/s]
+LimitsLaw = Callable[[float, float, float], Limits]
+
+
+class ThrusterModel(ABC):
+    """
+    How one thruster loses thrust in a flow.
+
+    `flow` stands for the thruster's speed through the water along its thrust axis and along two
+    axes across it [m/s]. The *Bollard-equivalent* of a thrust is what the same propeller speed
+    gives at rest: what a motor driver must be told that goes by a curve measured at rest. Kostenko
+    and Tolstonogov (2017) give the loss at full speed only (eq. 3.11-3.13); that it is in
+    proportion to the speed of rotation, so to the root of the equivalent, is ours.
+    """
+
+    NAME: ClassVar[str]  # the word for it in a parameter file
+    PLURAL: ClassVar[str]  # several of them, in a picture's legend
+
+    bollard_thrust: Limits  # at rest [N]
+
+    @classmethod
+    @abstractmethod
+    def from_values(cls, values: Mapping[str, Any]) -> 'ThrusterModel':
+        """
+        Build the model of one thruster.
+
+        :param values: checked values of the thruster's parameters by their names, and of the
+            node's, such as `water_density`.
+        """
+
+    @cached_property
+    @abstractmethod
+    def limits(self) -> LimitsLaw:
+        """The limits as a function of the flow, within the Bollard limits, (lower, upper) [N]."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields alone: a law, once built, cannot be pickled."""
+        return {name: value for name, value in self.__dict__.items() if name != 'limits'}
+
+    @abstractmethod
+    def thrust_in_flow(self, equivalent: float, *flow: float) -> float:
+        """
+        Return the thrust that a driver told `equivalent` delivers in the flow [N].
+
+        :param equivalent: Bollard-equivalent thrust, within the Bollard limits [N].
+        :return: of the sign of `equivalent`, or 0 where the propeller is too slow to push at all.
+        """
+
+    @abstractmethod
+    def bollard_equivalent(self, thrust: float, *flow: float) -> float:
+        """
+        Return what a driver calibrated at rest must be told to deliver `thrust` in the flow [N].
+
+        The inverse of `thrust_in_flow` where the thrust is not 0; at the limit it is Bollard
+        thrust.
+
+        :param thrust: wanted in the flow, within the limits there [N].
+        """
+
+    def bollard_fraction(self, thrust: float, *flow: float) -> float:
+        """Return the Bollard-equivalent of `thrust` as a share of full throttle, -1 to 1."""
+        equivalent = self.bollard_equivalent(thrust, *flow)
+        return equivalent / abs(self.bollard_thrust[equivalent > 0.0]) if equivalent else 0.0

@@ -5,8 +5,9 @@ from pathlib import Path
 import re
 
 import pytest
-from support.paths import ROOT
+from support.paths import MT2012, ROOT
 from support.processes import run
+from support.vehicles import PAPER_TEST
 
 PACKAGE = ROOT / 'thrust_allocator'
 # A module imports nothing that stands after its own folder, or its own name where it lies flat
@@ -84,3 +85,24 @@ from thrust_allocator.study.__main__ import main
 main(['study', '--help'])
 """)
     assert done.returncode == 0 and '--output DIR' in done.stdout, done.stderr
+
+
+def test_the_public_api_allocates_without_ros():
+    """Four names from a YAML file to thrusts; the vehicle of the paper at 0.9 m/s."""
+    done = run('-c', HIDE + f"""
+import numpy as np
+from thrust_allocator import AllocationProblem, Allocator, load_vehicle, ThrustBounds
+from thrust_allocator.inputs import Inputs
+
+vehicle = load_vehicle({str(MT2012)!r})
+wrench, velocity = np.array([32.4, 0, 0, 0, 50.0, 0]), np.array([0.9, 0, 0, 0, 0, 0])
+print(*AllocationProblem(vehicle).solve(wrench, ThrustBounds(vehicle)(velocity)).thrusts)
+inputs = Inputs()
+inputs.accept_wrench(wrench * [1, -1, -1, 1, -1, -1], 0)
+inputs.accept_velocity(velocity, 0, 'odom')
+print(*Allocator(vehicle).tick(inputs, 0).thrusts)
+""")
+    assert done.returncode == 0, done.stderr
+    for line in done.stdout.splitlines():
+        assert [*map(float, line.split())] == pytest.approx(PAPER_TEST[4][1], abs=0.006)
+    assert done.stdout.count('\n') == 2

@@ -22,8 +22,10 @@ setup(
     install_requires=['setuptools', 'numpy', 'osqp>=1.1', 'PyYAML'],
     extras_require={
         'jazzy': jazzy,
-        'test': ['pytest', 'hypothesis', 'daqp', 'matplotlib', 'dask[distributed]', 'flake8'],
+        'test': ['pytest', 'hypothesis', 'daqp', 'matplotlib', 'dask[distributed]', 'flake8',
+                 'rosbags'],
         'plot': ['matplotlib'],
+        'replay': ['rosbags', 'matplotlib'],
         'cluster': ['dask[distributed]'],
         'bench': ['daqp', 'quadprog', 'casadi', 'matplotlib'],
     },

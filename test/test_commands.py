@@ -32,7 +32,8 @@ def test_the_node_is_what_runs_by_itself(called, arguments, received):
     assert called == [['node', *received]]
 
 
-@pytest.mark.parametrize('name', ['demo', 'study', 'soak', 'benchmark'])
+@pytest.mark.parametrize('name', [
+    'demo', 'import_vehicle', 'study', 'replay', 'soak', 'benchmark'])
 def test_each_program_has_a_usage(name, capsys):
     """`thrust_allocator NAME --help` prints that program's usage and ends with status 0."""
     with pytest.raises(SystemExit) as ended:
@@ -42,7 +43,8 @@ def test_each_program_has_a_usage(name, capsys):
 
 
 @pytest.mark.parametrize('name, said', [
-    ('studdy', 'studdy: is no command, must be one of node, demo, study, soak, benchmark'),
+    ('studdy', 'studdy: is no command, must be one of node, demo, import_vehicle, '
+     'study, replay, soak, benchmark'),
     ('studdy', '; did you mean study?'), ('nothing', 'nothing: is no command'),
     *[(name, f'{name}: is not built yet') for name in command.NOT_BUILT]])
 def test_other_names_are_refused(called, name, said, capsys):

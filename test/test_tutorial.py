@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
 from support.paths import ROOT
-from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.check import read_parameters
+from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 import yaml
 

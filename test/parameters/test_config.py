@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 from support.paths import CONFIG
-from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.build import describe, load_vehicle
+from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.models import Tunnel

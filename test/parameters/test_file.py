@@ -6,9 +6,9 @@ import sysconfig
 import pytest
 import rclpy
 from thrust_allocator.parameters import file as parameter_file
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.check import read_parameters
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.ros.node import ThrustAllocator
 

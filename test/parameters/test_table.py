@@ -6,8 +6,8 @@ import re
 
 from hypothesis import example, given, settings, strategies as st
 import pytest
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.check import read_parameters
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 
 UP, DOWN, TUNNEL = 'thrusters.up.', 'thrusters.down.', 'thrusters.tunnel.'

@@ -6,9 +6,9 @@ import math
 from hypothesis import assume, given, settings, strategies as st
 import numpy as np
 import pytest
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.build import describe
 from thrust_allocator.parameters.check import read_parameters
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.models import Constant
 

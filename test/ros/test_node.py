@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from support.peer import cruise, SimulatedClock
 from support.vehicles import NAMES, PAPER_TEST
 
@@ -50,12 +50,16 @@ def test_topics(start, namespace):
 
 
 def test_quality_of_service(start):
-    """Outputs are reliable, inputs best effort, and only the newest message is kept."""
-    node, _ = start()
-    profiles = {end.topic_name: (end.qos_profile.reliability, end.qos_profile.depth)
+    """Outputs are reliable, inputs best effort; the newest message is kept, for nobody to come."""
+    node, _ = start('publish_individual:=true')
+    profiles = {end.topic_name: (end.qos_profile.reliability, end.qos_profile.durability,
+                                 end.qos_profile.depth)
                 for end in (*node.publishers, *node.subscriptions)}
-    assert {profiles[f'/{topic}'] for topic in OUT} == {(ReliabilityPolicy.RELIABLE, 1)}
-    assert {profiles[f'/{topic}'] for topic in IN} == {(ReliabilityPolicy.BEST_EFFORT, 1)}
+    outputs = [*OUT, 'thruster_states', *(f'thrusters/{name}/thrust' for name in NAMES)]
+    assert {profiles[f'/{topic}'] for topic in outputs} == {
+        (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE, 1)}
+    assert {profiles[f'/{topic}'] for topic in IN} == {
+        (ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE, 1)}
 
 
 @pytest.mark.parametrize('reliability', [ReliabilityPolicy.RELIABLE,

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from support.peer import cruise
@@ -129,19 +130,62 @@ def test_topics_per_thruster_come_and_go(stepped):
         assert [[message.data for message in messages] for messages in heard] == [[0.0]] * 5
 
 
-def test_zeros_come_last_on_every_topic(start):
-    """Stopping publishes zeros on the array and on the topics per thruster."""
+def test_a_live_change_sends_nothing_by_itself(stepped):
+    """Whether on or off again, a change of something else brings no message of its own."""
+    one = stepped('publish_individual:=true')
+    heard = [listen(one, Float64, f'thrusters/{name}/thrust') for name in NAMES]
+    for on, count in ((True, 1), (False, 0)):
+        one.set_parameters_of_node([Parameter('publish_individual', value=on)])
+        one.step(WRENCH, TWIST)
+        one.wait_until(lambda: all(heard), 'a message of each')
+        for messages in heard:
+            messages.clear()
+        one.set_parameters_of_node([Parameter('thrusters.up.weight', value=2.0 + on)])
+        one.step()
+        one.report()  # sent after all that came before
+        assert [len(messages) for messages in heard] == [count] * 5
+        assert all(message.data for messages in heard for message in messages)
+
+
+@pytest.fixture
+def stopping(start, monkeypatch):
+    """Return a running node, and what it leaves behind: last values, and topics acknowledged."""
     node, peer = start('publish_individual:=true', 'message_frame:=frd')
-    last = {}
+    last, acknowledged = {}, set()
     for name in NAMES:
         peer.create_subscription(Float64, f'thrusters/{name}/thrust',
                                  lambda message, name=name: last.update({name: message.data}), 10)
-    peer.settle(WRENCH, TWIST)
+    peer.settle(20.0 * WRENCH, TWIST)
     peer.wait_until(lambda: len(last) == 5 and all(last.values()), 'thrust on each topic')
     peer.on_tick = lambda: None
+    wait = Publisher.wait_for_all_acked
+    monkeypatch.setattr(Publisher, 'wait_for_all_acked', lambda self, timeout: (
+        acknowledged.add(self.topic), wait(self, timeout))[1])
+    return node, peer, last, acknowledged
+
+
+SETPOINTS = {'thruster_setpoints', *(f'thrusters/{name}/thrust' for name in NAMES)}
+
+
+def test_zeros_come_last_on_every_topic(stopping):
+    """Stopping publishes zeros on the array, both wrenches and per thruster, and waits for each."""
+    node, peer, last, acknowledged = stopping
+    assert peer.ticks[-1]['unallocated_wrench'].any()
+    known = len(peer.ticks)
     node.stop()
-    peer.wait_until(lambda: not any(last.values()), 'zeros')
-    assert not peer.setpoints().any()
+    peer.wait_until(lambda: not any(last.values()) and len(peer.ticks) > known, 'zeros')
+    tick = peer.ticks[-1]
+    assert is_stopped(tick) and not tick['unallocated_wrench'].any()
+    assert acknowledged >= SETPOINTS
+
+
+def test_zeros_come_last_though_ticks_fail(stopping, monkeypatch):
+    """When no tick can be had any more, zeros go out on the array and per thruster all the same."""
+    node, peer, last, acknowledged = stopping
+    monkeypatch.setattr(node._allocator, 'tick', None)
+    node.stop()
+    peer.wait_until(lambda: not any(last.values()) and not peer.setpoints().any(), 'zeros')
+    assert acknowledged >= SETPOINTS
 
 
 def test_no_joint_states_while_nobody_listens(stepped):

@@ -4,8 +4,8 @@ import pytest
 from rcl_interfaces.msg import ParameterType
 from rclpy.parameter import parameter_value_to_python
 from support.live_parameters import change
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.build import describe
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 import yaml
 
 FILES = sorted(default_parameter_file().parent.glob('*.yaml'))

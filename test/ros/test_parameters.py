@@ -53,3 +53,10 @@ def test_no_parameters_for_this_node(start, variant):
     with pytest.raises(ParameterError,
                        match='thruster_names: .*top key.* /alpha/thrust_allocator'):
         start(file=file, remap='__ns:=/alpha')
+
+
+def test_what_a_user_should_know_is_logged_at_the_start(start, variant, capfd):
+    """A controlled DOF that no thruster acts on is a WARN on stderr before the first tick."""
+    start(file=variant({'wrench_weights.roll': 100.0}))
+    said, = [line for line in capfd.readouterr().err.splitlines() if 'roll' in line]
+    assert '[WARN]' in said and 'no thruster can act on roll' in said

@@ -9,8 +9,8 @@ from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
 from support.stepped_peer import inside_limits
-from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.parameters.build import describe
+from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.ros.parameters import plain

@@ -121,6 +121,15 @@ def test_late_ticks_in_simulated_time(stepped):
     assert peer.report()[2]['ticks late'] == '0'
 
 
+@pytest.mark.parametrize('periods, late', [(1.49, '0'), (1.51, '1')])
+def test_from_when_a_tick_is_late(stepped, periods, late):
+    """A tick is late from one and a half periods after the one before on, and answers all alike."""
+    peer = stepped()
+    peer.steps(3, WRENCH, TWIST)
+    assert is_answer(peer.step(OTHER, period=round(periods * PERIOD)), OTHER)
+    assert peer.report()[2]['ticks late'] == late
+
+
 def test_a_stall(start):
     """After a stall one tick comes at once, for the newest command, and counts as late."""
     _, peer = start()

@@ -11,9 +11,9 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
-from thrust_allocator.physics.flow import Flow
 from thrust_allocator.physics.vehicle import Thruster
 from thrust_allocator.ros.messages import array_message, fill_wrench
+from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.tick import Tick
 
 OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
@@ -88,25 +88,3 @@ class Outputs:
         deadline = time.monotonic() + ACKNOWLEDGE
         for publisher in (self._setpoints_publisher, *self._individual):
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
-
-
-def _newton(thrusts: list[float], thrusters: Sequence[Thruster], flow: Flow) -> list[float]:
-    return thrusts
-
-
-def _bollard_newton(thrusts: list[float], thrusters: Sequence[Thruster],
-                    flow: Flow) -> list[float]:
-    return [one.model.bollard_equivalent(thrust, *motion)
-            for thrust, one, motion in zip(thrusts, thrusters, flow)]
-
-
-def _bollard_fraction(thrusts: list[float], thrusters: Sequence[Thruster],
-                      flow: Flow) -> list[float]:
-    return [one.model.bollard_fraction(thrust, *motion)
-            for thrust, one, motion in zip(thrusts, thrusters, flow)]
-
-
-# What a setpoint may stand for: the thrust wanted in the flow [N], or what a driver calibrated at
-# rest must be told to deliver it, in newtons or as a share of Bollard thrust
-SETPOINTS = {'newton': _newton, 'bollard_newton': _bollard_newton,
-             'bollard_fraction': _bollard_fraction}

@@ -12,6 +12,7 @@ from rclpy.signals import SignalHandlerOptions
 from thrust_allocator.ros.node import ThrustAllocator
 from thrust_allocator.parameters.file import (
     check_parameter_file, command_line_values, default_parameter_file, NODE_NAME)
+from thrust_allocator.parameters.guesses import marked_guesses
 from thrust_allocator.parameters.types import ParameterError
 
 
@@ -48,6 +49,10 @@ def main(args: Sequence[str] | None = None) -> int:
         return 1
     if not files:
         node.get_logger().warning(f'no parameter file given: running MT-2012 from {default}')
+    for file in files:
+        if guesses := marked_guesses(file):
+            node.get_logger().warning(
+                f'{file} marks as a guess, so measure it and delete the mark: {", ".join(guesses)}')
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:

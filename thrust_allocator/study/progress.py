@@ -8,15 +8,17 @@ INTERVAL = {True: 0.5, False: 10.0}  # between two notes, by whether stderr is a
 
 
 class Progress:
-    """Says now and then how many points are done."""
+    """Says now and then how many of something are done."""
 
-    def __init__(self) -> None:
+    def __init__(self, program: str = 'study', things: str = 'points') -> None:
+        """Begin; `program` stands in front of each note, which counts `things`."""
+        self._program, self._things = program, things
         self._start = self._last = time.monotonic()
         self._terminal = sys.stderr.isatty()
         self._said = False
 
     def __call__(self, done: int, total: int) -> None:
-        """Note that `done` of `total` points are done; print it if it is time to."""
+        """Note that `done` of `total` are done; print it if it is time to."""
         now = time.monotonic()
         elapsed = now - self._start
         last = done >= total
@@ -26,5 +28,5 @@ class Progress:
         self._said, self._last = True, now
         left = elapsed / done * (total - done)
         end = '\r' if self._terminal and not last else '\n'
-        print(f'study: {done} of {total} points, {elapsed:.0f} s gone, {left:.0f} s to go   ',
-              end=end, file=sys.stderr, flush=True)
+        print(f'{self._program}: {done} of {total} {self._things}, {elapsed:.0f} s gone, '
+              f'{left:.0f} s to go   ', end=end, file=sys.stderr, flush=True)

@@ -1,0 +1,118 @@
+"""The files of a replay that machines read: ticks.csv, summary.json, and replay.mcap."""
+
+from collections.abc import Iterator, Sequence
+import heapq
+from itertools import repeat
+import json
+from pathlib import Path
+import tempfile
+from typing import Any
+
+import numpy as np
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import get_typestore, Stores
+from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.replay.run import Run
+
+_TYPES = get_typestore(Stores.ROS2_JAZZY)
+_UNITS = ('N', 'N', 'N', 'N*m', 'N*m', 'N*m')
+_VELOCITY = ('surge [m/s]', 'sway [m/s]', 'heave [m/s]', 'roll [rad/s]', 'pitch [rad/s]',
+             'yaw [rad/s]')
+
+
+def write_summary(path: Path, found: dict[str, dict[str, Any]], about: dict[str, Any]) -> None:
+    """Write the figures of one vehicle at the top, those of several under `vehicles`."""
+    body = next(iter(found.values())) if len(found) == 1 else {'vehicles': found}
+    path.write_text(json.dumps({**about, **body}, indent=2) + '\n', 'utf-8')
+
+
+def write_ticks(path: Path, runs: Sequence[Run]) -> None:
+    """Write a row for each tick, of several vehicles one after another."""
+    with path.open('w', encoding='utf-8') as file:
+        for i, run in enumerate(runs):
+            names = [one.name for one in run.description.vehicle.thrusters]
+            unit = run.description.parameters.values['setpoint_unit']
+            columns = (
+                [f'{name} thrust [N]' for name in names], [f'{name} lower [N]' for name in names],
+                [f'{name} upper [N]' for name in names],
+                [f'{name} setpoint [{unit}]' for name in names],
+                [f'{name} recorded [{unit}]' for name in names],
+                *([f'{kind} {dof} [{u}]' for dof, u in zip(DOFS, _UNITS)]
+                  for kind in ('commanded', 'achieved', 'unallocated')),
+                [f'velocity {name}' for name in _VELOCITY], ['live', 'solved', 'stale', 'stopped'])
+            header = ','.join(['vehicle', 'time [s]', *sum(columns, [])])
+            if i == 0 or len(names) != len(runs[0].description.vehicle.thrusters):
+                file.write(header + '\n')
+            ticks = run.ticks
+            table = np.hstack([
+                *(ticks[name] for name in ('thrusts', 'lower', 'upper', 'setpoints', 'recorded',
+                                           'wrench', 'achieved', 'unallocated', 'velocity')),
+                *(ticks[name][:, np.newaxis] for name in ('live', 'solved', 'stale', 'stopped'))])
+            row = f'{run.name},%.9f' + ',%.9g' * (table.shape[1] - 4) + ',%d' * 4 + '\n'
+            file.writelines(row % (time, *values) for time, values in zip(
+                (ticks.times * 1e-9).tolist(), map(np.ndarray.tolist, table)))
+
+
+def write_bag(path: Path, runs: Sequence[Run]) -> None:
+    """
+    Write the recomputed topics, under /replay, or /replay/<vehicle> if there are several.
+
+    One message of each topic is serialised; all others differ from it in the numbers at its end.
+    """
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix='.replay') as folder:
+        bag = Path(folder) / 'replay'
+        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            rows = []
+            for run in runs:
+                for topic, kind, payloads in _topics(run, len(runs) > 1):
+                    connection = writer.add_connection(topic, kind, typestore=_TYPES)
+                    rows.append(zip(repeat(connection), payloads))
+            for connection, (time, payload) in heapq.merge(*rows, key=lambda row: row[1][0]):
+                writer.write(connection, time, payload)
+        next(bag.glob('*.mcap')).replace(path)
+
+
+def _topics(run: Run, several: bool) -> Iterator[tuple[str, str, Iterator[tuple[int, bytes]]]]:
+    """Yield topic, type, and time and payload of each message."""
+    root = f'/replay/{run.topic}' if several else '/replay'
+    names = [one.name for one in run.description.vehicle.thrusters]
+    ticks, types = run.ticks, _TYPES.types
+    limits = np.hstack([ticks['lower'], ticks['upper']])
+    yield (f'{root}/thrust_limits', 'std_msgs/msg/Float64MultiArray',
+           _payloads(ticks.times, limits, _array(types, len(names)),
+                     'std_msgs/msg/Float64MultiArray'))
+    wrench = types['geometry_msgs/msg/Wrench']
+    zero = types['geometry_msgs/msg/Vector3'](x=0.0, y=0.0, z=0.0)
+    yield (f'{root}/unallocated_wrench', 'geometry_msgs/msg/Wrench',
+           _payloads(ticks.times, ticks['unallocated'], wrench(force=zero, torque=zero),
+                     'geometry_msgs/msg/Wrench'))
+    empty = np.zeros(0)
+    states = types['sensor_msgs/msg/JointState'](
+        header=types['std_msgs/msg/Header'](
+            stamp=types['builtin_interfaces/msg/Time'](sec=0, nanosec=0), frame_id=''),
+        name=names, position=empty, velocity=empty, effort=np.zeros(len(names)))
+    yield (f'{root}/thruster_states', 'sensor_msgs/msg/JointState',
+           _payloads(ticks.times, ticks['thrusts'], states, 'sensor_msgs/msg/JointState',
+                     stamped=True))
+
+
+def _array(types: Any, p: int) -> Any:
+    """Return the message of thrust_limits as the node lays it out."""
+    dimension = types['std_msgs/msg/MultiArrayDimension']
+    layout = types['std_msgs/msg/MultiArrayLayout'](
+        dim=[dimension(label='limits', size=2, stride=2 * p),
+             dimension(label='thrusters', size=p, stride=p)], data_offset=0)
+    return types['std_msgs/msg/Float64MultiArray'](layout=layout, data=np.zeros(2 * p))
+
+
+def _payloads(times: np.ndarray, rows: np.ndarray, message: Any, kind: str,
+              stamped: bool = False) -> Iterator[tuple[int, bytes]]:
+    template = bytes(_TYPES.serialize_cdr(message, kind))
+    head = template[:len(template) - 8 * rows.shape[1]]
+    rows = np.ascontiguousarray(rows, dtype='<f8')
+    for time, row in zip(times.tolist(), rows):
+        if stamped:
+            seconds, rest = divmod(time, 10**9)
+            head = (head[:4] + seconds.to_bytes(4, 'little') + rest.to_bytes(4, 'little')
+                    + head[12:])
+        yield time, head + row.tobytes()

@@ -1,0 +1,154 @@
+"""One vehicle through a recorded mission, by the very tick of the node."""
+
+from collections import Counter, deque
+from collections.abc import Mapping
+import re
+from typing import Any, NamedTuple
+
+import numpy as np
+from thrust_allocator.inputs import Inputs
+from thrust_allocator.parameters.build import Description
+from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.replay import messages
+from thrust_allocator.replay.bag import Message
+from thrust_allocator.replay.schedule import Schedule
+from thrust_allocator.replay.ticks import Ticks
+from thrust_allocator.setpoints import SETPOINTS
+from thrust_allocator.tick import Allocator
+
+LATENCY = 10**6  # [ns], which a tick takes from its inputs to its setpoints
+
+
+class Event(NamedTuple):
+    """Something that happened at a time."""
+
+    time: int  # [ns]
+    text: str
+
+
+class Run:
+    """A vehicle, and all that its ticks came to."""
+
+    def __init__(self, name: str, description: Description, settings: Mapping[str, Any],
+                 start: int, as_recorded: bool) -> None:
+        """
+        Set up.
+
+        :param name: under which the vehicle is reported.
+        :param settings: values by full name that hold whatever was changed when it was recorded.
+        :param start: of the recording [ns].
+        :param as_recorded: whether ticks come when setpoints were recorded, and not by schedule.
+        """
+        self.name, self.start = name, start
+        self.first = self.description = description  # before, and after what was changed
+        self._fixed = settings
+        self._inputs = Inputs()
+        self._allocator = Allocator.of(description)
+        self._schedule = None if as_recorded else Schedule(description.parameters.values, start)
+        self._enabled = description.parameters.values['start_enabled']
+        self._velocity = ('odom' if description.parameters.values['velocity_type'] == 'odometry'
+                          else 'twist')
+        self.ticks = Ticks(len(description.vehicle.thrusters))
+        self.events: list[Event] = []
+        self._waiting: deque[Message] = deque()  # for the tick whose setpoints come next
+        self._known_dropped: Counter[str] = Counter()
+
+    @property
+    def topic(self) -> str:
+        """Return the name as a word of a topic."""
+        return re.sub(r'[^A-Za-z0-9_]+', '_', self.name).strip('_')
+
+    @property
+    def dropped(self) -> Counter[str]:
+        """Return the messages that the node drops, by topic and cause."""
+        return self._inputs.dropped
+
+    def take(self, message: Message) -> None:
+        """Take one recorded message, after the ticks that come before it."""
+        if self._schedule:
+            for time in self._schedule.until(message.time):
+                self._tick(time)
+            self._use(message)
+        elif message.name == 'thruster_setpoints':
+            self._tick_as_recorded(message)
+        else:
+            self._waiting.append(message)
+
+    def _use(self, message: Message) -> None:
+        if message.name == 'parameter_events':
+            self._change(message)
+        elif message.name != 'thruster_setpoints':
+            self._accept(message)
+
+    def finish(self, time: int) -> None:
+        """Tick until the end of the recording [ns], and take what came after the last tick."""
+        if self._schedule:
+            for moment in self._schedule.until(time):
+                self._tick(moment)
+        while self._waiting:
+            self._use(self._waiting.popleft())
+
+    def _accept(self, message: Message) -> None:
+        content, now, inputs = message.content, message.time, self._inputs
+        if message.name == 'cmd_wrench':
+            inputs.accept_wrench(messages.wrench(content), now, messages.age(content, now))
+            if self._schedule and inputs.wrench is not None and inputs.wrench.time == now:
+                self._schedule.wrench_accepted(now)
+        elif message.name == 'odom' == self._velocity:
+            inputs.accept_velocity(messages.twist(content), now, 'odom', content.header.frame_id,
+                                   messages.orientation(content))
+        elif message.name == 'twist' == self._velocity:
+            inputs.accept_velocity(messages.twist(content), now, 'twist')
+        elif message.name == 'current' and self._velocity == 'odom':
+            inputs.accept_current(messages.vector(content.vector), content.header.frame_id, now)
+        for cause in inputs.dropped - self._known_dropped:
+            self.events.append(Event(now, f'message dropped: {cause}'))
+        self._known_dropped = inputs.dropped.copy()
+
+    def _change(self, message: Message) -> None:
+        """Change what was changed while it was recorded, but for what was set by hand."""
+        known = self.description.parameters.values
+        changed = messages.parameter_changes(message.content)
+        changes = {name: value for name, value in changed.items()
+                   if name in known and name not in self._fixed}
+        if not changes:
+            return
+        told = ', '.join(f'{name} {known[name]} to {value}' for name, value in changes.items())
+        try:
+            self.description = self.description.changed(changes)
+        except ParameterError as error:
+            self.events.append(Event(message.time, f'change of {told} not followed: {error}'))
+            return
+        self._allocator = Allocator.of(self.description, self._allocator)
+        if self._schedule:
+            self._schedule.change(self.description.parameters.values)
+        self.events.append(Event(message.time, f'parameter changed: {told}'))
+
+    def _tick_as_recorded(self, message: Message) -> None:
+        """
+        Tick when setpoints were recorded; zeros in spite of a wrench are a node that stopped.
+
+        What came while the node was at work on them counts for the next tick. But where a wrench
+        makes the ticks, the newest one made this.
+        """
+        begun = message.time - LATENCY
+        if self.description.parameters.values.get('tick_on_wrench', False):
+            begun = max([begun, *(one.time for one in self._waiting if one.name == 'cmd_wrench')])
+        while self._waiting and self._waiting[0].time <= begun:
+            self._use(self._waiting.popleft())
+        recorded = np.asarray(message.content.data, dtype=float)
+        wrench = self._inputs.live_wrench(message.time, self._allocator.settings.timeouts)
+        stopped = not recorded.any() and wrench is not None and bool(wrench.any())
+        self._tick(message.time, recorded, stopped)
+
+    def _tick(self, time: int, recorded: np.ndarray | None = None, stopped: bool = False) -> None:
+        tick = self._allocator.tick(self._inputs, time, self._enabled and not stopped)
+        thrusters, thrusts = self.description.vehicle.thrusters, tick.thrusts.tolist()
+        unit = self.description.parameters.values['setpoint_unit']
+        fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
+        setpoints = (fractions if unit == 'bollard_fraction' else
+                     SETPOINTS[unit](thrusts, thrusters, tick.flow))
+        velocity = tick.motion.twist
+        if velocity is None:
+            velocity = (*self._allocator.settings.fallback_velocity, 0.0, 0.0, 0.0)
+        self.ticks.add(time, tick, velocity, setpoints, fractions, recorded, stopped)

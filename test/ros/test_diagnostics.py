@@ -195,11 +195,11 @@ def test_a_brief_failure_is_reported(stepped, monkeypatch):
     solve = allocation_module.Solver.solve
     with monkeypatch.context() as patch:
         patch.setattr(allocation_module.Solver, 'solve', lambda self, *vectors: (
-            'maximum iterations reached', solve(self, *vectors)[1]))
+            'primal infeasible', solve(self, *vectors)[1]))
         peer.step()
     peer.steps(3)
     level, message, _ = peer.report()
-    assert level == 'ERROR' and 'maximum iterations reached' in message
+    assert level == 'ERROR' and 'primal infeasible' in message
     peer.step()
     assert peer.report()[0] == 'OK'
 
@@ -210,7 +210,7 @@ def test_no_error_while_stopped(stepped, monkeypatch):
     peer.steps(2, WRENCH, STILL)
     with monkeypatch.context() as patch:
         patch.setattr(allocation_module.Solver, 'solve',
-                      lambda self, *vectors: ('maximum iterations reached', 1))
+                      lambda self, *vectors: ('primal infeasible', 1))
         peer.step()
     peer.enable(False)
     peer.step()

@@ -13,7 +13,7 @@ from thrust_allocator.physics.models import Constant
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.active_set import ActiveSet
 import thrust_allocator.solve.problem as allocation_module
-from thrust_allocator.solve.problem import AllocationProblem, IllConditioned
+from thrust_allocator.solve.problem import AllocationProblem
 
 
 def random_ticks(seed: int, vehicles: int, ticks: int):
@@ -141,18 +141,18 @@ def test_mirrored_command_swaps_left_and_right():
     assert other == pytest.approx(one[[0, 3, 2, 1, 4]], abs=1e-6)
 
 
-def test_refuses_weights_beyond_double_precision():
-    """Q, R and positions whose scales differ absurdly are refused by name, not solved wrongly."""
-    vehicle = mt2012()
-    light = tuple(replace(one, weight=1e-9) for one in vehicle.thrusters)
-    with pytest.raises(IllConditioned, match='^are up to 10000 while'):
-        AllocationProblem(replace(vehicle, thrusters=light))
+def start_from(monkeypatch, thrust: float):
+    """Have the active set give the same thrust for all thrusters, and no better on asking."""
+    monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
+        thrust + 0.0 * limits[0], np.clip(thrust, *limits),
+        np.zeros(limits.shape[1], dtype=np.int8)))
+    monkeypatch.setattr(ActiveSet, 'refine', lambda self, wrench, limits, thrusts, at_bound, _: (
+        thrusts, at_bound, False))
 
 
 def test_osqp_finds_the_optimum_by_itself(monkeypatch):
     """Started from zero instead of from the optimum, OSQP arrives at the same thrusts."""
-    monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
-        0.0 * limits[0], 0.0 * limits[0], np.zeros(limits.shape[1], dtype=np.int8)))
+    start_from(monkeypatch, 0.0)
     vehicle = mt2012()
     problem, bounds = AllocationProblem(vehicle), ThrustBounds(vehicle)
     for speed, thrusts, *_ in PAPER_TEST:
@@ -165,9 +165,7 @@ def test_osqp_finds_the_optimum_by_itself(monkeypatch):
 def test_unsolved_tick_stays_inside_the_bounds_and_says_so(monkeypatch):
     """If OSQP runs out of iterations, the answer is finite, inside the bounds and marked."""
     monkeypatch.setattr(allocation_module, 'MAX_ITERATIONS', 1)
-    monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
-        0.0 * limits[0] - 50.0, np.clip(-50.0, *limits),
-        np.zeros(limits.shape[1], dtype=np.int8)))
+    start_from(monkeypatch, -50.0)
     vehicle = mt2012()
     wrench, velocity = paper_test(0.9)
     limits = ThrustBounds(vehicle)(velocity)

@@ -12,7 +12,8 @@ from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS, frd_signs
 from thrust_allocator.physics.models import MODELS
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
-from thrust_allocator.solve.problem import AllocationProblem, IllConditioned
+from thrust_allocator.solve.conditioning import IllConditioned
+from thrust_allocator.solve.problem import AllocationProblem
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,7 @@ class ActiveSet:
         :param wrench_weights: diagonal of R, (m,), > 0.
         """
         self._matrix = np.ascontiguousarray(matrix)
+        self._thrust_weights, self._wrench_weights = thrust_weights, wrench_weights
         # Of a function that knows nothing of self: a cycle would keep a replaced problem alive
         self._response = lru_cache(maxsize=CACHED_SETS)(partial(
             _response, self._matrix, matrix / thrust_weights, np.diag(1.0 / wrench_weights)))
@@ -86,6 +87,57 @@ class ActiveSet:
         if now != beyond and (wanted > limits).tobytes() != beyond:
             self._start(len(wanted))
         return wanted, thrusts, response.at_bound
+
+    def refine(self, wrench: np.ndarray, limits: np.ndarray, thrusts: np.ndarray,
+               at_bound: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray, bool]:
+        """
+        Return the optimum to the last digits that rounding leaves, and whether it is certain.
+
+        Where R / Q is large and the wrench far out of reach, the rounding of the responses shows in
+        the thrusts, and where thrusters are alike, in which of them are held. Here the gradient of
+        the cost, g = Q x - B^T R (f - B x), is computed from its definition at each step: Newton
+        steps of the free thrusters, cut at the first bound that is met; then, of the held ones that
+        would leave their bound, the first is let go (Nocedal and Wright, 2006, section 16.5).
+
+        The optimum is certain if the thrusts meet its conditions (g zero for a free thruster and
+        pressing a held one against its bound: Karush, 1939; Kuhn and Tucker, 1951) to within what
+        rounding can make of g. They are then the exact optimum for Q, R, B and f that differ by
+        no more than rounding from those given (after Oettli and Prager, 1964).
+
+        :param wrench: f over the controlled DOFs, (m,).
+        :param limits: (2, p), row 0 lower, row 1 upper.
+        :param thrusts: where to start, (p,), inside the limits.
+        :param at_bound: which bound holds each thruster there, (p,) int8, as `solve` returns it.
+        :param tolerance: what rounding can make of g, relative to the sum of its terms' sizes.
+        :return: thrusts and bounds as `solve` returns them, and whether they are certain.
+        """
+        lower, upper = limits
+        thrusts, at_bound, size = thrusts.copy(), at_bound.copy(), np.abs(self._matrix)
+        for _ in range(20 + 10 * len(thrusts)):
+            gradient = self._thrust_weights * thrusts - self._matrix.T @ (
+                self._wrench_weights * (wrench - self._matrix @ thrusts))
+            rounding = tolerance * (self._thrust_weights * np.abs(thrusts) + size.T @ (
+                self._wrench_weights * (np.abs(wrench) + size @ np.abs(thrusts))))
+            free = at_bound == 0
+            wrong = np.where(free, np.abs(gradient), at_bound * gradient) - rounding
+            wrong[lower == upper] = 0.0
+            if (wrong <= 0.0).all():
+                return thrusts, at_bound, True
+            if (wrong[free] <= 0.0).all():
+                at_bound[wrong.argmax()] = 0
+                continue
+            response = self._response(np.concatenate((at_bound >= 0, at_bound > 0)).tobytes())
+            step = -gradient * free / self._thrust_weights
+            step -= free * (response.matrix @ (self._matrix @ step))
+            bound = np.where(step < 0.0, lower, upper)
+            room = bound - thrusts
+            share = np.divide(
+                room, step, out=np.ones_like(step), where=np.abs(step) > np.abs(room))
+            first = share.argmin()
+            thrusts += share[first] * step
+            if share[first] < 1.0:
+                thrusts[first], at_bound[first] = bound[first], np.sign(step[first])
+        return thrusts, at_bound, False
 
     def _follow(self, wrench: np.ndarray, limits: np.ndarray, wanted: np.ndarray,
                 goal: bytes) -> tuple[np.ndarray, bytes]:

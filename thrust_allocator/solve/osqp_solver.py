@@ -8,6 +8,7 @@ import scipy.sparse
 
 
 COMPILED = '_solver'  # where osqp.OSQP keeps the compiled object
+UNDECIDED = ('maximum iterations reached', 'solved inaccurate')  # OSQP's words for running out
 
 
 class Solver:

@@ -1,5 +1,7 @@
 """The documents say what the code does."""
 
+from importlib import import_module
+import inspect
 import re
 
 from support.documents import shown
@@ -28,15 +30,40 @@ def test_quick_start_is_two_blocks_of_one_line():
     assert all(block.count('\n') == 1 for block in blocks)
 
 
-def test_architecture_lists_every_module():
-    """The list of modules is complete."""
+def test_architecture_lists_every_folder_and_flat_module():
+    """The table of what is where is complete, and nothing in it has gone."""
     listed = re.findall(
-        r'^\| `([\w/]+)` \|', (ROOT / 'doc/architecture.md').read_text('utf-8'), re.M)
+        r'^\| `(\w[\w/]*)` \|', (ROOT / 'doc/architecture.md').read_text('utf-8'), re.M)
     package = ROOT / 'thrust_allocator'
-    modules = {str(file.relative_to(package).with_suffix('')) for file in package.rglob('*.py')
-               if file.stem != '__init__' and file.parent.name not in (
-                   'study', 'benchmark', 'import_vehicle', 'replay')}
-    assert set(listed) == modules
+    folders = {f'{file.parent.relative_to(package)}/' for file in package.glob('*/**/__init__.py')}
+    modules = {file.stem for file in package.glob('*.py')} - {'__init__'}
+    assert sorted(listed) == sorted(folders | modules)
+
+
+def test_paths_in_the_documents_exist():
+    """Each file of the package that contributing and architecture name is there."""
+    for page in ('architecture', 'contributing'):
+        text = (ROOT / f'doc/{page}.md').read_text('utf-8')
+        named = set(re.findall(r'`([\w/]+\.(?:py|md|rst))`', text)) - {'physics/models/rim.py'}
+        assert len(named) > 5
+        assert not {name for name in named if not (ROOT / name).exists()
+                    and not (ROOT / 'thrust_allocator' / name).exists()}
+
+
+def test_equations_are_marked_where_they_are_computed():
+    """Each function of the table exists, and its code names the equations of its row."""
+    rows = re.findall(r'^\| ([\d., ]+) \| .* \| `([\w/]+)\.py: ([\w.]+)` \|$',
+                      (ROOT / 'doc/allocation.md').read_text('utf-8'), re.M)
+    numbered = set()
+    for numbers, module, name in rows:
+        function = import_module(f'thrust_allocator.{module.replace("/", ".")}')
+        for part in name.split('.'):
+            function = inspect.getattr_static(function, part)
+        code = inspect.getsource(getattr(function, 'func', function))
+        for number in numbers.split(', '):
+            assert re.search(rf'eq\. [\d., and]*\b{re.escape(number)}\b', code), (number, name)
+            numbered.add(number)
+    assert numbered == {'2.6', *(f'3.{i}' for i in range(7, 14))}
 
 
 def test_study_page_has_every_option():

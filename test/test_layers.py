@@ -11,10 +11,11 @@ from support.vehicles import PAPER_TEST
 
 PACKAGE = ROOT / 'thrust_allocator'
 # A module imports nothing that stands after its own folder, or its own name where it lies flat
-ORDER = ('markdown', 'physics', 'solve', 'parameters', 'inputs', 'tick', 'diagnosis', '__init__',
-         'ros', 'study', 'benchmark', 'soak', 'demo', '__main__')
+ORDER = ('markdown', 'physics', 'solve', 'parameters', 'inputs', 'setpoints', 'tick', 'diagnosis',
+         '__init__', 'ros', 'import_vehicle', 'study', 'replay', 'benchmark', 'soak', 'demo',
+         '__main__')
 WITH_ROS = {'ros', 'benchmark', 'soak', 'demo', '__main__'}
-ROS = re.compile(r'(rcl\w*|ament_\w+|ros\w+|launch\w*|\w+_(msgs|srvs|interfaces))(\..*)?')
+ROS = re.compile(r'(rcl\w*|ament_\w+|ros(?!bags)\w+|launch\w*|\w+_(msgs|srvs|interfaces))(\..*)?')
 LOOK_UP = ('parameters/file.py', 'ament_index_python')  # of the default file, if it is there
 FILES = sorted(PACKAGE.rglob('*.py'))
 
@@ -106,3 +107,18 @@ print(*Allocator(vehicle).tick(inputs, 0).thrusts)
     for line in done.stdout.splitlines():
         assert [*map(float, line.split())] == pytest.approx(PAPER_TEST[4][1], abs=0.006)
     assert done.stdout.count('\n') == 2
+
+
+def test_the_four_lines_of_the_readme():
+    """They run without ROS, in a clone, and give the thrusts of the paper's test."""
+    block, = re.findall(
+        r'^```python\n(.*?)^```$', (ROOT / 'README.md').read_text('utf-8'), re.M | re.S)
+    assert block.count('\n') == 4
+    done = run('-c', HIDE + f"""
+from numpy import array
+wrench, velocity = array([32.4, 0, 0, 0, 50.0, 0]), array([0.9, 0, 0, 0, 0, 0])
+{block}
+print(*thrusts)
+""")
+    assert done.returncode == 0, done.stderr
+    assert [*map(float, done.stdout.split())] == pytest.approx(PAPER_TEST[4][1], abs=0.006)

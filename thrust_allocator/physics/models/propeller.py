@@ -61,7 +61,7 @@ class Propeller(ThrusterModel):
             across = hypot(one, other)
             speed = hypot(along, across)
             angle = atan2(across, along)  # arccos of the normalised product is noisy at 0 and pi
-            first = max(pi / 2 - first_slope * speed, first_min)
+            first = max(pi / 2 - first_slope * speed, first_min)  # eq. 3.9
             second = min(max(second_start + second_slope * speed, first),
                          SECOND_CRITICAL_ANGLE_MAX)
             return (0.0 - reverse(pi - angle, speed, first, second),  # -x could be -0.0
@@ -111,7 +111,11 @@ def speed_loss_of_propeller(thrust_slope: float, water_density: float, max_revol
 
 def _sense(bollard: float, axial: float, opposed: float, floor: float) -> Callable[
         [float, float, float, float], float]:
-    """Return the limit of one sense of thrust, which sees the flow at the angle `incoming`."""
+    """
+    Return the limit of one sense of thrust, which sees the flow at the angle `incoming`.
+
+    It is Bollard thrust less what the flow takes (eq. 3.7), and no less than 0.
+    """
     most = (1.0 - floor) * bollard  # that opposed flow can take [N]
 
     def limit(incoming: float, speed: float, first: float, second: float) -> float:

@@ -7,7 +7,7 @@ from rclpy.parameter import Parameter
 from support.stepped_peer import inside_limits, is_stopped, SECOND
 from support.vehicles import NAMES
 
-TICKS = 3000
+TICKS = 1500
 RULES = ['fallback_velocity:=[0.5, 0.0, 0.1]', 'thrusters.up.max_rate:=200.0',
          'thrusters.left.max_rate:=20.0', 'thrusters.tunnel.max_rate:=1000.0',
          'thrusters.tunnel.cutoff:=0.1', 'thrusters.right.cutoff:=0.7']

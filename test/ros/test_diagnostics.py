@@ -8,7 +8,6 @@ from std_msgs.msg import Float64MultiArray
 from support.peer import cruise
 from support.stepped_peer import SECOND
 from support.vehicles import NAMES
-from thrust_allocator.diagnosis import Findings, Level
 import thrust_allocator.solve.problem as allocation_module
 
 WRENCH = [60.0, 0.0, 10.0, 0.0, 20.0, -15.0]
@@ -41,16 +40,6 @@ def test_figures_are_those_since_the_last_report(stepped):
     peer.report()
     peer.steps(3)
     assert peer.report()[2]['ticks'] == '3'
-
-
-def test_keys_stay(stepped):
-    """The same figures are told while stopped as while allocating."""
-    peer = stepped()
-    peer.steps(2, WRENCH, STILL)
-    allocating = set(peer.report()[2])
-    peer.enable(False)
-    peer.steps(2)
-    assert set(peer.report()[2]) == allocating
 
 
 def test_ages(stepped):
@@ -97,15 +86,6 @@ def test_saturation(stepped):
     assert figures['unallocated moment [N*m]'] == '0.23'
     peer.step(*cruise(0.3, side=1.0))
     assert peer.report()[:2] == ('OK', 'allocating')
-
-
-def test_saturation_of_several(stepped):
-    """Far out of reach, all thrusters and DOFs concerned are named."""
-    peer = stepped()
-    peer.step([3000.0, 0.0, 500.0, 0.0, 0.0, 0.0], STILL)
-    message = peer.report()[1]
-    assert message.startswith('down, left, up, right at the limit; surge 2556.2 N, heave 496')
-    assert message.endswith('off their command')
 
 
 @pytest.mark.parametrize('heave, told', [(122.1 + 1.6, False), (122.1 + 2.0, True)])
@@ -159,33 +139,6 @@ def test_several_findings(stepped):
     for text in ('no wrench', 'no odometry'):
         peer.wait_until(lambda: len(peer.logged(text)) >= 2, f'the log of {text}')
         assert [line.split(':')[0] for line in peer.logged(text)] == ['WARN', 'INFO']
-
-
-class Log:
-    """A logger that keeps what it is given."""
-
-    def __init__(self):
-        self.lines = []
-
-    def __getattr__(self, level):
-        return lambda text: self.lines.append((level, text))
-
-
-def test_findings_are_logged_once_each_way():
-    """A finding is logged when it appears and when it is over, by its level; the worst leads."""
-    log = Log()
-    findings = Findings(log)
-    assert findings.overall() == (Level.OK, 'allocating')
-    for text in ('late', 'later', 'latest'):
-        findings.note('time', text)
-    findings.note('solver', 'broken', Level.ERROR)
-    assert findings.overall() == (Level.ERROR, 'broken; latest')
-    for _ in range(3):
-        findings.note('time', '')
-    assert findings.overall() == (Level.ERROR, 'broken')
-    findings.note('time', 'late again')
-    assert log.lines == [('warning', 'late'), ('error', 'broken'), ('info', 'no longer: latest'),
-                         ('warning', 'late again')]
 
 
 def test_a_brief_failure_is_reported(stepped, monkeypatch):

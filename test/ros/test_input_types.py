@@ -49,8 +49,7 @@ def test_a_stamped_wrench_is_a_wrench(stepped, monkeypatch):
 
 
 @pytest.mark.parametrize('age, counts', [
-    (0, True), (SECOND // 2, True), (SECOND // 2 + 1, False), (100 * SECOND, False),
-    (-1, True), (-TENTH, True), (-TENTH - 1, False), (-100 * SECOND, False)])
+    (SECOND // 2, True), (SECOND // 2 + 1, False), (-TENTH, True), (-TENTH - 1, False)])
 def test_age_by_the_stamp(stamped, age, counts):
     """A wrench older than wrench_timeout, or more than 0.1 s ahead, is not answered."""
     one = stamped()

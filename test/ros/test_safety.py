@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
-from rclpy.parameter import Parameter
-from support.stepped_peer import assert_optimal, is_stopped, rest_of, SECOND
+from support.stepped_peer import assert_optimal, is_stopped, rest_of
 from support.vehicles import NAMES
 
 WRENCH = [120.0, 0.0, 10.0, 0.0, 25.0, -15.0]  # frd axes; without sway and roll: not controlled
@@ -13,10 +12,9 @@ RATE_LIMIT = [f'thrusters.{name}.max_rate:=100.0' for name in NAMES]  # [N/s]
 STEP = 100.0 / 50.0  # what it allows per tick [N]
 
 
-@pytest.mark.parametrize('rules', [[], RATE_LIMIT], ids=['unlimited', 'max_rate'])
-def test_the_wrench_times_out(stepped, rules):
+def test_the_wrench_times_out(stepped):
     """Old wrench: exact zeros at once whatever max_rate, speed bounds, nothing unallocated."""
-    peer = stepped('wrench_timeout:=0.2', *rules)
+    peer = stepped('wrench_timeout:=0.2', *RATE_LIMIT)
     assert np.abs(peer.steps(40, WRENCH, TWIST)[-1]['thruster_setpoints']).max() > 10.0 * STEP
     peer.silence('wrench')
     ticks = peer.steps(15)
@@ -30,10 +28,9 @@ def test_the_wrench_times_out(stepped, rules):
     assert level == 'WARN' and 'no wrench: zero setpoints' in message
 
 
-@pytest.mark.parametrize('rules', [[], RATE_LIMIT], ids=['unlimited', 'max_rate'])
-def test_disabled(stepped, rules):
+def test_disabled(stepped):
     """~/enable false: exact zeros from the next tick, the whole of a live wrench unallocated."""
-    peer = stepped(*rules)
+    peer = stepped(*RATE_LIMIT)
     peer.steps(40, WRENCH, TWIST)
     answer = peer.enable(False)
     assert answer.success and answer.message
@@ -80,33 +77,15 @@ def test_enabling_twice_changes_nothing(stepped):
     assert_array_equal(peer.step()['thruster_setpoints'], before['thruster_setpoints'])
 
 
-def stop_by_time_out(peer):
-    """Let the wrench expire."""
-    peer.silence('wrench')
-    peer.step(period=SECOND)
-
-
-def stop_by_service(peer):
-    """Disable the node for a tick."""
+def test_starting_ramps_from_zero(stepped):
+    """A start after a stop ramps at max_rate from zero, the last published."""
+    peer = stepped(*RATE_LIMIT)
+    peer.steps(40, WRENCH)
     peer.enable(False)
     peer.step()
     peer.enable(True)
-
-
-@pytest.mark.parametrize('stop', [lambda peer: None, stop_by_time_out, stop_by_service],
-                         ids=['first start', 'time-out', 'disabled'])
-def test_starting_ramps_from_zero(stepped, stop):
-    """A start, the first or after a stop, ramps at max_rate from zero, the last published."""
-    peer = stepped(*RATE_LIMIT)
-    if stop is not stop_by_time_out:
-        peer.step()
-    else:
-        peer.steps(40, WRENCH)
-    stop(peer)
-    ticks = peer.steps(5, WRENCH)
-    for number, tick in enumerate(ticks, start=1):
-        most = np.abs(tick['thruster_setpoints']).max()
-        assert most == pytest.approx(number * STEP)
+    for number, tick in enumerate(peer.steps(5, WRENCH), start=1):
+        assert np.abs(tick['thruster_setpoints']).max() == pytest.approx(number * STEP)
 
 
 def test_a_thruster_is_switched_off_and_on(stepped):
@@ -164,30 +143,3 @@ def test_a_switched_thruster_ramps(stepped):
     tick = peer.step()
     assert_array_equal(tick['thrust_limits'][[2, 7]], [-STEP, STEP])
     assert 0.0 < abs(tick['thruster_setpoints'][2]) <= STEP
-
-
-@pytest.mark.parametrize('value', [1, 0.0, 'false', [False], None], ids=repr)
-@pytest.mark.parametrize('atomically', [False, True])
-def test_a_refused_change_changes_nothing(stepped, value, atomically):
-    """A wrong type for `enabled` is refused with a reason; the output stays to the bit."""
-    peer = stepped()
-    before = peer.steps(3, WRENCH, TWIST)[-1]
-    wrong = Parameter('thrusters.up.enabled', value=value)
-    result = peer.set_parameters_of_node([wrong], atomically)[-1]
-    assert not result.successful and result.reason
-    assert peer.node.get_parameter('thrusters.up.enabled').value is True
-    after = peer.step()
-    for topic, values in before.items():
-        assert after[topic].tobytes() == values.tobytes()
-
-
-def test_an_atomic_set_is_refused_whole(stepped):
-    """Of an atomic set with one mistake nothing comes into force."""
-    peer = stepped()
-    before = peer.steps(3, WRENCH)[-1]
-    result, = peer.set_parameters_of_node(
-        [Parameter('thrusters.up.enabled', value=False), Parameter('rate', value=-20.0)],
-        atomically=True)
-    assert not result.successful and result.reason
-    assert_array_equal(peer.step()['thruster_setpoints'], before['thruster_setpoints'])
-    assert peer.node.get_parameter('thrusters.up.enabled').value is True

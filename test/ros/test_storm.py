@@ -16,7 +16,7 @@ from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.ros.parameters import plain
 from thrust_allocator.solve.problem import AllocationProblem
 
-CHANGES = 1000  # half of them invalid
+CHANGES = 400  # half of them invalid
 PERIOD = 0.01  # between two wrenches, and two changes [s]
 PATIENCE = 60.0  # [s]
 WRENCH = np.array([40.0, 0.0, 5.0, 0.0, -20.0, 3.0])

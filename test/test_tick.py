@@ -18,6 +18,7 @@ FAR = np.array([3000.0, 0.0, 500.0, 0.0, 300.0, 200.0])  # out of reach
 TWIST = np.array([0.3, 0.1, -0.1, 0.02, 0.05, -0.02])
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 SECOND = 10**9  # [ns]
+PERIOD = SECOND // 50  # of the default rate [ns]
 TIMEOUTS = Timeouts(wrench=SECOND // 5, velocity=SECOND // 2, current=2 * SECOND)
 SETTINGS = Settings(message_frame='frd', fallback_velocity=(0.0, -0.6, 0.0), timeouts=TIMEOUTS)
 FALLBACK = np.array([0.0, -0.6, 0.0, 0.0, 0.0, 0.0])  # tighter for the tunnel alone
@@ -164,11 +165,72 @@ def test_stopping_knows_no_rate_and_starting_ramps_from_zero(stop):
         replace(one, max_rate=100.0) for one in VEHICLE.thrusters))
     allocator = Allocator(vehicle, SETTINGS)
     for i in range(40):
-        tick = allocator.tick(inputs(WRENCH, now=i), i)
+        tick = allocator.tick(inputs(WRENCH, now=i * PERIOD), i * PERIOD)
     assert np.abs(tick.thrusts).max() > 20.0
-    assert_stopped(allocator.tick(inputs(stop.get('wrench', WRENCH)), 0, stop.get('enabled', True)))
-    most = [np.abs(allocator.tick(inputs(WRENCH), 0).thrusts).max() for _ in range(3)]
+    now = 40 * PERIOD
+    assert_stopped(allocator.tick(inputs(stop.get('wrench', WRENCH), now=now), now,
+                                  stop.get('enabled', True)))
+    times = [now + i * PERIOD for i in (1, 2, 3)]
+    most = [np.abs(allocator.tick(inputs(WRENCH, now=now), now).thrusts).max() for now in times]
     assert_allclose(most, [2.0, 4.0, 6.0])
+
+
+@pytest.mark.parametrize('gap, share', [
+    (PERIOD, 1.0), (PERIOD // 4, 0.25), (2 * PERIOD, 2.0), (50 * PERIOD, 2.0), (-SECOND, 1.0)])
+def test_a_rate_goes_by_the_true_time_since_the_last_tick(gap, share):
+    """Two periods at most count; where the clock went back, one."""
+    vehicle = replace(VEHICLE, thrusters=tuple(
+        replace(one, max_rate=100.0) for one in VEHICLE.thrusters))
+    allocator = Allocator(vehicle, SETTINGS)
+    start = 10 * SECOND
+    first = allocator.tick(inputs(FAR, now=start), start).thrusts
+    second = allocator.tick(inputs(FAR, now=start + gap), start + gap).thrusts
+    assert_allclose(np.abs(second - first).max(), share * 2.0)
+
+
+def test_the_limits_fade_to_the_fallback_and_back():
+    """From one time-out after the last velocity to two; back in the same time; never a step."""
+    allocator, moving = Allocator(VEHICLE, SETTINGS), bounds(TWIST)
+    tighter = np.array([np.maximum(moving[0], bounds(FALLBACK)[0]),
+                        np.minimum(moving[1], bounds(FALLBACK)[1])])
+    received, timeout, found = inputs(twist=TWIST), TIMEOUTS.velocity, []
+    for now in range(0, 5 * timeout, PERIOD):
+        if now >= 3 * timeout:
+            received.accept_velocity(TWIST, now, 'odom')
+        limits = allocator.tick(received, now).limits
+        if now < 3 * timeout:
+            expected = min(max(now / timeout - 1.0, 0.0), 1.0)
+        else:
+            expected = max(1.0 - (now - 3 * timeout + PERIOD) / timeout, 0.0)
+        assert_allclose(limits, (1.0 - expected) * moving + expected * tighter, atol=1e-9)
+        found.append(limits)
+    steps = np.abs(np.diff(found, axis=0)).max(axis=(1, 2))
+    assert steps.max() <= 1.001 * PERIOD / timeout * np.abs(moving - tighter).max()
+    assert_array_equal(found[-1], moving)
+
+
+def test_the_first_velocity_ever_counts_at_once():
+    """Before it the fallback counts; from it on the limits are its own, without a fade."""
+    allocator, received = Allocator(VEHICLE, SETTINGS), inputs(WRENCH)
+    for now in range(0, SECOND, PERIOD):
+        assert_array_equal(allocator.tick(received, now).limits, bounds(FALLBACK))
+    received.accept_velocity(TWIST, SECOND, 'odom')
+    assert_array_equal(allocator.tick(received, SECOND).limits, bounds(TWIST))
+
+
+def test_a_filter_on_the_velocity():
+    """After a step a share exp(-t / tau) is left to go; after a gap it begins anew."""
+    settings = replace(SETTINGS, velocity_time_constant=0.1)
+    allocator, received = Allocator(VEHICLE, settings), Inputs()
+    allocator.tick(received, 0)
+    received.accept_velocity(np.zeros(6), 0, 'odom')
+    for i in range(1, 8):  # odometry of any rate, between ticks too
+        received.accept_velocity(TWIST, i * SECOND // 70, 'odom')
+    now = SECOND // 10
+    assert_allclose(received.velocity.values, (1.0 - np.exp(-1.0)) * TWIST)
+    assert_array_equal(allocator.tick(received, now).limits, bounds(received.velocity.values))
+    received.accept_velocity(-TWIST, now + TIMEOUTS.velocity + 1, 'odom')
+    assert_array_equal(received.velocity.values, -TWIST)
 
 
 def test_a_change_of_parameters_goes_on_from_the_last_tick():
@@ -177,10 +239,10 @@ def test_a_change_of_parameters_goes_on_from_the_last_tick():
         f'thrusters.{one.name}.max_rate': 100.0 for one in VEHICLE.thrusters}
     description = describe(given)
     allocator = Allocator.of(description)
-    for i in range(5):
-        last = allocator.tick(inputs(WRENCH), 0).thrusts
+    for now in range(0, 5 * PERIOD, PERIOD):
+        last = allocator.tick(inputs(WRENCH, now=now), now).thrusts
     changed = Allocator.of(description.changed({'thrusters.up.weight': 2.0}), allocator)
-    following = changed.tick(inputs(WRENCH), 0).thrusts
+    following = changed.tick(inputs(WRENCH, now=5 * PERIOD), 5 * PERIOD).thrusts
     assert_allclose(np.abs(following - last).max(), 2.0)
     assert np.abs(following).max() > 10.0
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from dataclasses import dataclass
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -23,11 +24,18 @@ class Timeouts(NamedTuple):
     current: int
 
 
+class Smoothing(NamedTuple):
+    """A first-order filter on the velocity."""
+
+    time_constant: float  # 0: none [ns]
+    longest_gap: float  # between two velocities, after which the filter is set anew [ns]
+
+
 @dataclass
 class Received:
     """The newest accepted message of one topic."""
 
-    values: np.ndarray  # as they stood in the message
+    values: np.ndarray  # as they stood in the message, a velocity as the filter leaves it
     time: int  # of receipt [ns]
     frame: str = ''  # the frame id that the message gave
     orientation: np.ndarray | None = None  # quaternion x, y, z, w
@@ -43,6 +51,7 @@ class Motion(NamedTuple):
 
     twist: np.ndarray | None  # (6,), axes of the messages [m/s, rad/s]; None: never received
     stale: bool  # whether it is too old to be relied on
+    overdue: float  # for how long it has been [ns]
     missing: str  # since when one is missing that is expected, in words, or ''
     current_ignored: str  # why a current that was received does not count, or ''
 
@@ -58,6 +67,7 @@ class Inputs:
         self.wrench: Received | None = None
         self.velocity: Received | None = None
         self.current: Received | None = None
+        self.smoothing = Smoothing(0.0, 0.0)  # of the velocities that come
         self.dropped: Counter[str] = Counter()  # messages by topic and cause
 
     def accept_wrench(self, wrench: np.ndarray, now: int, old: int = 0) -> None:
@@ -82,7 +92,17 @@ class Inputs:
         :param orientation: quaternion x, y, z, w that turns body axes into the parent frame's.
         """
         if self._is_sound(topic, twist, LARGEST_VELOCITY):
-            self.velocity = Received(twist, now, frame, orientation)
+            self.velocity = Received(self._smoothed(twist, now), now, frame, orientation)
+
+    def _smoothed(self, twist: np.ndarray, now: int) -> np.ndarray:
+        time_constant, longest_gap = self.smoothing
+        if not time_constant or self.velocity is None:
+            return twist
+        gap = now - self.velocity.time
+        if not 0 <= gap <= longest_gap:
+            return twist
+        keep = math.exp(-gap / time_constant)
+        return keep * self.velocity.values + (1.0 - keep) * twist
 
     def accept_current(self, velocity: np.ndarray, frame: str, now: int) -> None:
         """Remember the velocity of the water in the axes of a frame, (3,) [m/s]."""
@@ -103,15 +123,17 @@ class Inputs:
 
     def motion(self, now: int, timeouts: Timeouts) -> Motion:
         """Return the velocity of the last odometry, less the current where one is known."""
-        stale = self.velocity is None or self.velocity.age(now) > timeouts.velocity
+        overdue = (math.inf if self.velocity is None
+                   else self.velocity.age(now) - timeouts.velocity)
+        stale = overdue > 0
         missing = self._missing_since(now) if stale and timeouts.velocity else ''
         if self.velocity is None:
-            return Motion(None, stale, missing, '')
+            return Motion(None, stale, overdue, missing, '')
         if self.current is None:
-            return Motion(self.velocity.values, stale, missing, '')
+            return Motion(self.velocity.values, stale, overdue, missing, '')
         ignored = self._why_no_current(now, timeouts)
-        return Motion(self.velocity.values if ignored else self._less_current(), stale, missing,
-                      ignored)
+        return Motion(self.velocity.values if ignored else self._less_current(), stale, overdue,
+                      missing, ignored)
 
     def _missing_since(self, now: int) -> str:
         if self.velocity is None:

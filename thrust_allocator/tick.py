@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
-from thrust_allocator.inputs import Inputs, Motion, Timeouts
+from thrust_allocator.inputs import Inputs, Motion, Smoothing, Timeouts
 from thrust_allocator.parameters.build import Description
 from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
 from thrust_allocator.physics.flow import Flow
@@ -22,13 +23,16 @@ class Settings:
     message_frame: str = 'flu'  # axes of all wrenches and velocities that come and go
     fallback_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # in those axes [m/s]
     timeouts: Timeouts = Timeouts(wrench=500_000_000, velocity=500_000_000, current=10 * 10**9)
+    velocity_time_constant: float = 0.0  # of the filter on the velocity, 0: none [s]
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Settings':
         """Take them from checked parameters by name."""
-        return cls(values['rate'], values['message_frame'], values['fallback_velocity'], Timeouts(
-            *(round(values.get(f'{name}_timeout', 0.0) * 1e9)
-              for name in ('wrench', 'odometry', 'current'))))
+        return cls(
+            values['rate'], values['message_frame'], values['fallback_velocity'],
+            Timeouts(*(round(values.get(f'{name}_timeout', 0.0) * 1e9)
+                       for name in ('wrench', 'odometry', 'current'))),
+            values['velocity_time_constant'])
 
 
 @dataclass(frozen=True)
@@ -46,26 +50,43 @@ class Tick:
     allocation: Allocation | None = None  # None: the vehicle is stopped
 
 
+@dataclass
+class Past:
+    """What one tick leaves to the next, whatever is changed between them."""
+
+    setpoints: np.ndarray  # last published, (p,) [N]
+    time: int | None = None  # of the last tick [ns]
+    fade: float = 0.0  # how far the limits have gone over to the fallback's, [0, 1]
+
+    def elapsed(self, now: int, nominal: float, longest: float) -> float:
+        """Return the time since the last tick, `nominal` if it is not known [s]."""
+        if self.time is None or now < self.time:
+            return nominal
+        return min(1e-9 * (now - self.time), longest)
+
+
 class Allocator:
     """Decides ticks, one after another; what came last is in `Inputs`, times are in ns."""
 
     def __init__(self, vehicle: Vehicle, settings: Settings = Settings(),
-                 problem: AllocationProblem | None = None,
-                 last: np.ndarray | None = None) -> None:
+                 problem: AllocationProblem | None = None, past: Past | None = None) -> None:
         """
         Set up.
 
         :param problem: of this vehicle, if there is one already.
-        :param last: setpoints of the tick before, (p,) [N]; zeros unless given.
+        :param past: what the tick before has left, if there was one.
         :raises IllConditioned: as the allocation problem does.
         """
         self.vehicle, self.settings = vehicle, settings
         self._problem = AllocationProblem(vehicle) if problem is None else problem
-        self._last = np.zeros(len(vehicle.thrusters)) if last is None else last
+        self._past = Past(np.zeros(len(vehicle.thrusters))) if past is None else past
         self._bounds = ThrustBounds(vehicle)
         self.signs = frd_signs(settings.message_frame)
         max_rates = np.array([thruster.max_rate for thruster in vehicle.thrusters])
-        self._step = np.where(max_rates > 0.0, max_rates / settings.rate, np.inf)  # [N]
+        self._unlimited = max_rates == 0.0
+        self._max_rates = max_rates  # [N/s]
+        self._smoothing = Smoothing(
+            settings.velocity_time_constant * 1e9, settings.timeouts.velocity or math.inf)
         self._fallback_flow = self._bounds.flow(
             self.signs * (*settings.fallback_velocity, 0.0, 0.0, 0.0))
         self._fallback_limits = self._bounds.in_flow(self._fallback_flow)
@@ -74,7 +95,7 @@ class Allocator:
     def of(cls, description: Description, before: 'Allocator | None' = None) -> 'Allocator':
         """Return the allocator that parameters describe, which goes on from the one `before`."""
         return cls(description.vehicle, Settings.from_values(description.parameters.values),
-                   description.problem, before and before._last)
+                   description.problem, before and before._past)
 
     def tick(self, inputs: Inputs, now: int, enabled: bool = True) -> Tick:
         """
@@ -84,22 +105,28 @@ class Allocator:
         :param now: on the clock of `inputs` [ns].
         :param enabled: whether the thrusters may push at all.
         """
+        past, period = self._past, 1.0 / self.settings.rate
+        elapsed = past.elapsed(now, nominal=period, longest=2.0 * period)
+        inputs.smoothing = self._smoothing  # of what comes from now on
         motion = inputs.motion(now, self.settings.timeouts)
         wrench = inputs.live_wrench(now, self.settings.timeouts)
-        flow, limits = self._limits(motion)
+        flow, limits = self._limits(motion, now)
+        past.time = now
         if wrench is None or not enabled:
-            self._last = np.zeros_like(self._last)
-            return Tick(limits, self._last, np.zeros(6),
+            past.setpoints = np.zeros_like(past.setpoints)
+            return Tick(limits, past.setpoints, np.zeros(6),
                         np.zeros(6) if wrench is None else wrench, flow, enabled,
                         wrench, motion)
-        limits = rate_limited(limits, self._last, self._step)
+        if not self._unlimited.all():
+            step = np.where(self._unlimited, np.inf, self._max_rates * elapsed)  # [N]
+            limits = rate_limited(limits, past.setpoints, step)
         allocation = self._problem.solve(self.signs * wrench, limits)
-        self._last = allocation.thrusts
+        past.setpoints = allocation.thrusts
         return Tick(limits, allocation.thrusts, self.signs * allocation.achieved,
                     self.signs * allocation.unallocated, flow, enabled, wrench, motion,
                     allocation)
 
-    def _limits(self, motion: Motion) -> tuple[Flow, np.ndarray]:
+    def _limits(self, motion: Motion, now: int) -> tuple[Flow, np.ndarray]:
         """
         Return the flow at the thrusters and the limits there.
 
@@ -109,7 +136,19 @@ class Allocator:
             return self._fallback_flow, self._fallback_limits.copy()
         flow = self._bounds.flow(self.signs * motion.twist)
         limits = self._bounds.in_flow(flow)
-        if motion.stale:
-            limits[0] = np.maximum(limits[0], self._fallback_limits[0])
-            limits[1] = np.minimum(limits[1], self._fallback_limits[1])
+        fade = self._past.fade = self._faded(motion, now)
+        if fade:
+            tighter = np.array((np.maximum(limits[0], self._fallback_limits[0]),
+                                np.minimum(limits[1], self._fallback_limits[1])))
+            limits = tighter if fade == 1.0 else (1.0 - fade) * limits + fade * tighter
         return flow, limits
+
+    def _faded(self, motion: Motion, now: int) -> float:
+        """Return how far the limits have gone over to the fallback's, without a step either way."""
+        timeout, past = self.settings.timeouts.velocity, self._past
+        if not timeout:
+            return float(motion.stale)
+        since = math.inf if past.time is None else max(now - past.time, 0)  # [ns]
+        if motion.stale:
+            return min(past.fade + min(since, motion.overdue) / timeout, 1.0)
+        return max(past.fade - since / timeout, 0.0)

@@ -247,7 +247,8 @@ def test_the_defaults_are_those_documented():
     assert {name: value for name, value in parameters.values.items() if value is not None} == {
         **required, 'rate': 50.0, 'water_density': 1025.0, 'vehicle_frame': 'frd',
         'message_frame': 'flu', 'start_enabled': True, 'wrench_timeout': 0.5,
-        'odometry_timeout': 0.5, 'current_timeout': 10.0, 'fallback_velocity': (0.0, 0.0, 0.0),
+        'odometry_timeout': 0.5, 'current_timeout': 10.0,
+        'velocity_time_constant': 0.0, 'fallback_velocity': (0.0, 0.0, 0.0),
         'stamped_wrench': False, 'velocity_type': 'odometry', 'setpoint_unit': 'newton',
         'publish_individual': False, 'marker_frame': 'base_link',
         **{f'wrench_weights.{dof}': 10000.0 for dof in DOFS},

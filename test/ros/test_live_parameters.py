@@ -135,6 +135,7 @@ def test_odometry_timeout_and_fallback_velocity(stepped):
     assert_allclose(one.step()['thrust_limits'], moving, atol=1e-12)
     assert change(one, {'odometry_timeout': 0.03}) == [(True, '')]
     tighter = np.where(np.arange(10) < 5, np.maximum(moving, fast), np.minimum(moving, fast))
+    one.step()  # 40 ms after the last odometry: a third of the way
     assert_allclose(one.step()['thrust_limits'], tighter, atol=1e-12)
     assert 'no odometry' in one.report()[1]
     assert change(one, {'odometry_timeout': 0.0}) == [(True, '')]

@@ -23,6 +23,8 @@ NODE = (
     Definition('odometry_timeout', NOT_NEGATIVE, 0.5, 's',
                'age at which a velocity counts no more; 0: no odometry is expected'),
     Definition('current_timeout', POSITIVE, 10.0, 's', 'age at which a current counts no more'),
+    Definition('velocity_time_constant', NOT_NEGATIVE, 0.0, 's',
+               'of the first-order filter on the velocity that moves the limits; 0: none'),
     Definition('fallback_velocity', Reals((ANY,) * 3, '[x, y, z]'), (0.0, 0.0, 0.0), 'm/s',
                'velocity through the water while no odometry comes, in message_frame axes'),
     Definition('stamped_wrench', Flag(), False, '', 'whether cmd_wrench is a WrenchStamped',

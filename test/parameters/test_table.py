@@ -43,11 +43,13 @@ LISTS = {  # text of the message, a good list, and each item's ends
                             '[0, 1000000], not both 0', [-1.0, 1.0], [(-1e6, 0), (0, 1e6)]),
     UP + 'speed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     UP + 'opposed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
+    UP + 'speed_loss_quadratic': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     'fallback_velocity': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
 }
 FLAGS = ['start_enabled', UP + 'enabled']
 WORDS = {'vehicle_frame': 'one of frd, flu', 'message_frame': 'one of frd, flu',
-         UP + 'model': 'one of propeller, tunnel, constant'}
+         UP + 'model': 'one of propeller, tunnel, constant',
+         UP + 'angle_law': 'one of paper, cosine'}
 ALLOWED = {
     'thruster_names': NAMES,
     **{name: ('0 or ' if name.startswith('wrench_weights') else '') + f'a number in {interval}'
@@ -166,6 +168,12 @@ def test_a_missing_parameter_is_named(name):
     ({DOWN + 'bollard_thrust': [-68.2, 0.0]},
      f'{DOWN}bollard_thrust: is [-68.2, 0.0], must be [reverse, forward] with forward > 0 where '
      'propeller is given; or give speed_loss'),
+    ({UP + 'angle_law': 'cosine', UP + 'critical_angle_slope': 0.1},
+     f'{UP}critical_angle_slope: is 0.1, must be left out, or 0.2, where angle_law is cosine, '
+     'which has no such angle'),
+    ({UP + 'angle_law': 'cosine', UP + 'critical_angle_min': 1.2},
+     f'{UP}critical_angle_min: is 1.2, must be left out, or 1.0472, where angle_law is cosine, '
+     'which has no such angle'),
     ({f'wrench_weights.{dof}': 0 for dof in DOFS},
      'wrench_weights: are all 0, must leave at least one DOF controlled'),
     ({'thruster_names': ['down', 'left', 'up', 'right']},
@@ -177,10 +185,18 @@ def test_a_missing_parameter_is_named(name):
      'thrusters.stern: is missing, must describe the thruster that thruster_names lists'),
     ({'thruster_names': ['up', 'down', 'up']}, f"thruster_names: has 'up' twice, must be {NAMES}"),
 ], ids=['speed_loss and propeller', 'speed_loss and part of propeller', 'no forward thrust',
-        'nothing controlled', 'not listed', 'misspelt', 'not described', 'twice'])
+        'a slope without an angle', 'an angle of the other law', 'nothing controlled',
+        'not listed', 'misspelt', 'not described', 'twice'])
 def test_a_contradiction_is_refused(changes, expected):
     """Values that contradict each other are refused with the name of one of them."""
     assert message(changes) == expected
+
+
+def test_the_defaults_of_the_other_law_are_no_contradiction():
+    """A dump of a vehicle with the law cosine holds them, and starts the same vehicle."""
+    changes = {UP + 'angle_law': 'cosine', UP + 'critical_angle_slope': 0.2,
+               UP + 'critical_angle_min': 1.0472}
+    assert read_parameters(vehicle(changes)).values[UP + 'angle_law'] == 'cosine'
 
 
 def test_a_propeller_without_loss_is_refused():
@@ -256,7 +272,8 @@ def test_the_defaults_are_those_documented():
         UP + 'torque_ratio': 0.0, UP + 'critical_angle_slope': 0.2,
         UP + 'critical_angle_min': math.pi / 3, UP + 'second_critical_angle_offset': 0.0,
         UP + 'second_critical_angle_slope': 0.2, UP + 'opposed_loss': (0.0, 0.0),
-        UP + 'opposed_floor': 0.85}
+        UP + 'opposed_floor': 0.85, UP + 'angle_law': 'paper',
+        UP + 'speed_loss_quadratic': (0.0, 0.0)}
 
 
 ANYTHING = st.recursive(

@@ -9,6 +9,7 @@ import pytest
 from support.vehicles import mt2012, paper_test, PITCH, propeller
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.models import Constant, Tunnel
+from thrust_allocator.physics.models.propeller import ANGLE_LAWS
 from thrust_allocator.solve.problem import AllocationProblem
 
 BOLLARD = st.tuples(st.floats(-500.0, -1.0), st.floats(1.0, 500.0))
@@ -20,7 +21,8 @@ MODELS = st.one_of(
     st.builds(propeller, bollard_thrust=BOLLARD,
               speed_loss=st.tuples(st.floats(0.0, 100.0), st.floats(0.0, 100.0)),
               opposed_loss=st.tuples(st.floats(0.0, 50.0), st.floats(0.0, 50.0)),
-              opposed_floor=st.floats(0.0, 1.0)))
+              opposed_floor=st.floats(0.0, 1.0), angle_law=st.sampled_from(ANGLE_LAWS),
+              speed_loss_quadratic=st.tuples(st.floats(0.0, 30.0), st.floats(0.0, 30.0))))
 SIDES = st.sampled_from([0, 1])
 TUNNEL = Tunnel((-122.0, 122.1), 7.0, 72.5)
 

@@ -132,7 +132,9 @@ def test_angle_of_attack_is_exact_straight_ahead_and_astern():
 
 
 coefficients = st.fixed_dictionaries({
+    'angle_law': st.sampled_from(['paper', 'cosine']),
     'speed_loss': st.tuples(*[st.floats(0.0, 1e6)] * 2),
+    'speed_loss_quadratic': st.tuples(*[st.floats(0.0, 1e6)] * 2),
     'critical_angle_slope': st.floats(0.0, 1e6),
     'critical_angle_min': st.floats(1e-3, math.pi / 2),  # below, one bit of the angle is a step
     'second_critical_angle_offset': st.floats(-1e6, 1e6),
@@ -158,7 +160,8 @@ def test_propeller_limits_have_no_jump(changes, bollard, start, end):
             high = middle
         else:
             low = middle
-    steepest = max(changes['speed_loss'] + changes['opposed_loss']) * 50.0 / 1e-3
+    steepest = max(*changes['speed_loss'], *changes['opposed_loss'],
+                   50.0 * max(changes['speed_loss_quadratic'])) * 50.0 / 1e-3
     assert np.abs(at(high) - at(low)).max() <= 1e-13 * (bollard + steepest) * 1e3
 
 

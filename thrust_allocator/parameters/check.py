@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 import difflib
+from math import isclose
 from types import MappingProxyType
 from typing import Any
 
 from thrust_allocator.parameters.definition import Definition, REQUIRED
-from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.models import MODEL_PARAMETERS, PAPER_ANGLES
 from thrust_allocator.parameters.table import NODE, THRUSTER, THRUSTER_NAMES
 from thrust_allocator.parameters.types import LARGEST, ParameterError
 from thrust_allocator.physics.frames import DOFS
@@ -109,9 +110,11 @@ def _check_together(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> No
                                    'large enough for its period to fit a clock')
     if not any(values[f'wrench_weights.{dof}'] for dof in DOFS):
         raise ParameterError('wrench_weights: are all 0, must leave at least one DOF controlled')
-    for thruster in thrusters:
-        if f'thrusters.{thruster}.propeller.diameter' in values:
-            _check_propeller(values, f'thrusters.{thruster}.')
+    for prefix in (f'thrusters.{thruster}.' for thruster in thrusters):
+        if f'{prefix}propeller.diameter' in values:
+            _check_propeller(values, prefix)
+        if values.get(f'{prefix}angle_law') == 'cosine':
+            _check_cosine(values, prefix)
 
 
 def _check_propeller(values: Mapping[str, Any], prefix: str) -> None:
@@ -128,6 +131,15 @@ def _check_propeller(values: Mapping[str, Any], prefix: str) -> None:
     if max(speed_loss) > LARGEST:
         raise ParameterError.wrong(f'{prefix}propeller', speed_loss,
                                    f'such that speed_loss is at most {LARGEST:g}')
+
+
+def _check_cosine(values: Mapping[str, Any], prefix: str) -> None:
+    """Refuse what only the paper's angle law would heed, unless it is the default, as in a dump."""
+    for name, _, default, *_ in PAPER_ANGLES:
+        if not isclose(values[prefix + name], default, rel_tol=1e-4):
+            raise ParameterError.wrong(prefix + name, values[prefix + name],
+                                       f'left out, or {default:.5g}, where angle_law is cosine, '
+                                       'which has no such angle')
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from thrust_allocator.parameters.definition import (
     ANY, Definition, NOT_NEGATIVE, pair, POSITIVE, REQUIRED)
-from thrust_allocator.parameters.types import Real
+from thrust_allocator.parameters.types import Choice, Real
 from thrust_allocator.physics.models import Constant, Propeller, ThrusterModel, Tunnel
+from thrust_allocator.physics.models.propeller import ANGLE_LAWS
 
 
 class ModelParameters(NamedTuple):
@@ -21,12 +22,19 @@ class ModelParameters(NamedTuple):
         return self.always + sum(self.either, ())
 
 
+PAPER_ANGLES = (  # of angle_law paper alone
+    Definition('critical_angle_slope', NOT_NEGATIVE, 0.20, 'rad*s/m',
+               'a*: slope of the first critical angle; angle_law paper only'),
+    Definition('critical_angle_min', Real(0.0, math.pi / 2, above=True), math.pi / 3, 'rad',
+               'lower limit of the first critical angle; angle_law paper only'))
+
 PROPELLER = ModelParameters(
     always=(
-        Definition('critical_angle_slope', NOT_NEGATIVE, 0.20, 'rad*s/m',
-                   'a*: slope of the first critical angle'),
-        Definition('critical_angle_min', Real(0.0, math.pi / 2, above=True), math.pi / 3, 'rad',
-                   'lower limit of the first critical angle'),
+        Definition('angle_law', Choice(ANGLE_LAWS), 'paper', '',
+                   'how the axial loss falls with the angle of the flow'),
+        Definition('speed_loss_quadratic', pair(NOT_NEGATIVE), (0.0, 0.0), 'N*s^2/m^2',
+                   'C2: thrust lost per unit of axial speed squared [reverse, forward]'),
+        *PAPER_ANGLES,
         Definition('second_critical_angle_offset', ANY, 0.0, 'rad',
                    'c2: offset of the second critical angle from pi/2'),
         Definition('second_critical_angle_slope', ANY, 0.20, 'rad*s/m',

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -45,7 +46,7 @@ class ThrusterModel(ABC):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the fields alone: a law, once built, cannot be pickled."""
-        return {name: value for name, value in self.__dict__.items() if name != 'limits'}
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @abstractmethod
     def thrust_in_flow(self, equivalent: float, *flow: float) -> float:

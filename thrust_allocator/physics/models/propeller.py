@@ -1,31 +1,43 @@
-"""A propeller in oblique flow: Kostenko and Tolstonogov (2017), eq. 3.7-3.11."""
+"""A propeller in oblique flow: Kostenko and Tolstonogov (2017), eq. 3.7-3.11, or cos^2."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import Any
 
 from thrust_allocator.physics.models.model import Limits, LimitsLaw, ThrusterModel
 
+# How the axial loss falls with the angle of the flow: by eq. 3.11, or with the cosine squared,
+# which is what measurements say (doc/evidence.md)
+ANGLE_LAWS = ('paper', 'cosine')
+HALF_PI = pi / 2  # [rad]
 SECOND_CRITICAL_ANGLE_MAX = 2.0 * pi / 3.0  # [rad], ours: keeps it well below pi
 
 
 @dataclass(frozen=True)
 class Propeller(ThrusterModel):
-    """A propeller, which loses thrust by its speed and its angle to the flow."""
+    """
+    A propeller, which loses thrust by its speed and its angle to the flow.
+
+    Of the loss along its axis, C v + C_2 v^2, the part C v is in proportion to the speed of
+    rotation; C_2, the curvature of the thrust coefficient over the advance ratio, does not depend
+    on it.
+    """
 
     NAME = 'propeller'
     PLURAL = 'propellers'
 
     bollard_thrust: Limits  # T_0 (reverse <= 0, forward >= 0) [N]
     speed_loss: tuple[float, float]  # C (reverse, forward) [N*s/m]
-    critical_angle_slope: float  # a* [rad*s/m]
-    critical_angle_min: float  # [rad]
+    critical_angle_slope: float  # a*, of the paper's angle law alone [rad*s/m]
+    critical_angle_min: float  # of the paper's angle law alone [rad]
     second_critical_angle_offset: float  # c_2 [rad]
     second_critical_angle_slope: float  # b* [rad*s/m]
     opposed_loss: tuple[float, float]  # C_a (reverse, forward) [N*s/m]
     opposed_floor: float  # phi, share of Bollard thrust that opposed flow cannot take [-]
+    speed_loss_quadratic: tuple[float, float] = (0.0, 0.0)  # C_2 (reverse, forward) [N*s^2/m^2]
+    angle_law: str = 'paper'  # of ANGLE_LAWS
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Propeller':
@@ -38,30 +50,34 @@ class Propeller(ThrusterModel):
             values['bollard_thrust'], speed_loss, values['critical_angle_slope'],
             values['critical_angle_min'], values['second_critical_angle_offset'],
             values['second_critical_angle_slope'], values['opposed_loss'],
-            values['opposed_floor'])
+            values['opposed_floor'], values['speed_loss_quadratic'], values['angle_law'])
 
     @cached_property
     def limits(self) -> LimitsLaw:
         """
         The limits as a function of the flow.
 
-        Eq. 3.11 up to the first critical incoming angle, no loss up to the second one, and beyond
-        it the loss in opposed flow after Kim and Chung (2006). Continuous, never above Bollard
-        thrust, never across zero; not monotone in speed, by the paper's own law.
+        The axial loss by the angle law up to the first critical incoming angle, no loss up to the
+        second one, and beyond it the loss in opposed flow after Kim and Chung (2006). With the
+        law `cosine` the first one is pi/2. Continuous, never above Bollard thrust, never across
+        zero; with the paper's law not monotone in speed.
         """
+        cosine = self.angle_law == 'cosine'
         reverse, forward = (
-            _sense(bollard, axial, opposed, self.opposed_floor) for bollard, axial, opposed
+            _sense(bollard, axial, quadratic, opposed, self.opposed_floor, cosine)
+            for bollard, axial, quadratic, opposed
             in zip((-self.bollard_thrust[0], self.bollard_thrust[1]), self.speed_loss,
-                   self.opposed_loss))
-        first_slope, first_min = self.critical_angle_slope, self.critical_angle_min
-        second_start = pi / 2 + self.second_critical_angle_offset
+                   self.speed_loss_quadratic, self.opposed_loss))
+        first_slope, first_min = (0.0, HALF_PI) if cosine else (
+            self.critical_angle_slope, self.critical_angle_min)
+        second_start = HALF_PI + self.second_critical_angle_offset
         second_slope = self.second_critical_angle_slope
 
         def limits(along: float, one: float, other: float = 0.0) -> Limits:
             across = hypot(one, other)
             speed = hypot(along, across)
             angle = atan2(across, along)  # arccos of the normalised product is noisy at 0 and pi
-            first = max(pi / 2 - first_slope * speed, first_min)  # eq. 3.9
+            first = max(HALF_PI - first_slope * speed, first_min)  # eq. 3.9
             second = min(max(second_start + second_slope * speed, first),
                          SECOND_CRITICAL_ANGLE_MAX)
             return (0.0 - reverse(pi - angle, speed, first, second),  # -x could be -0.0
@@ -70,13 +86,13 @@ class Propeller(ThrusterModel):
         return limits
 
     def thrust_in_flow(self, equivalent: float, *flow: float) -> float:
-        """Return e - dL sqrt(e / T_0), with dL the loss at full speed of rotation [N]."""
+        """Return e - dL_1 sqrt(e / T_0) - dL_2, see `_losses` [N]."""
         if equivalent == 0.0:
             return equivalent
         side, e = (1, equivalent) if equivalent > 0.0 else (0, -equivalent)
         full = abs(self.bollard_thrust[side])
-        lost = full - abs(self.limits(*flow)[side])
-        thrust = max(e - lost * sqrt(e / full), 0.0)
+        turning, steady = self._losses(side, flow)
+        thrust = max(e - turning * sqrt(e / full) - steady, 0.0)
         return thrust if side else -thrust
 
     def bollard_equivalent(self, thrust: float, *flow: float) -> float:
@@ -85,10 +101,25 @@ class Propeller(ThrusterModel):
             return thrust
         side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
         full = abs(self.bollard_thrust[side])
-        lost = full - abs(self.limits(*flow)[side])
-        half = 0.5 * lost / sqrt(full)  # tau = e - 2 half sqrt(e)
-        e = min((half + sqrt(half * half + tau))**2, full)  # which rounding could exceed
+        turning, steady = self._losses(side, flow)
+        half = 0.5 * turning / sqrt(full)  # tau + steady = e - 2 half sqrt(e)
+        e = min((half + sqrt(half * half + tau + steady))**2, full)  # which rounding could exceed
         return e if side else -e
+
+    def _losses(self, side: int, flow: tuple[float, ...]) -> tuple[float, float]:
+        """
+        Return what one sense of thrust loses at full speed of rotation, in two parts [N].
+
+        :return: dL_1 in proportion to the speed of rotation, dL_2 whatever it is: that of C_2.
+        """
+        full = abs(self.bollard_thrust[side])
+        steady = full - abs(self._with_quadratic_alone.limits(*flow)[side]) \
+            if self.speed_loss_quadratic[side] else 0.0
+        return full - abs(self.limits(*flow)[side]) - steady, steady
+
+    @cached_property
+    def _with_quadratic_alone(self) -> 'Propeller':
+        return replace(self, speed_loss=(0.0, 0.0), opposed_loss=(0.0, 0.0))
 
 
 def speed_loss_of_propeller(thrust_slope: float, water_density: float, max_revolutions: float,
@@ -109,8 +140,8 @@ def speed_loss_of_propeller(thrust_slope: float, water_density: float, max_revol
     return forward * -reverse_limit / forward_limit, forward
 
 
-def _sense(bollard: float, axial: float, opposed: float, floor: float) -> Callable[
-        [float, float, float, float], float]:
+def _sense(bollard: float, axial: float, quadratic: float, opposed: float, floor: float,
+           cosine: bool) -> Callable[[float, float, float, float], float]:
     """
     Return the limit of one sense of thrust, which sees the flow at the angle `incoming`.
 
@@ -120,12 +151,13 @@ def _sense(bollard: float, axial: float, opposed: float, floor: float) -> Callab
 
     def limit(incoming: float, speed: float, first: float, second: float) -> float:
         if incoming <= first:
-            left = bollard - axial * speed * (1.0 - sin(pi / 2 * incoming / first))  # eq. 3.11
+            share = cos(incoming)**2 if cosine else 1.0 - sin(HALF_PI * incoming / first)
+            left = bollard - (axial + quadratic * speed) * speed * share  # eq. 3.11, and C_2
         elif incoming <= second:
             left = bollard
         else:
             left = bollard - min(opposed * speed, most) * (
-                1.0 - cos(pi / 2 * (incoming - second) / (pi - second)))
+                1.0 - cos(HALF_PI * (incoming - second) / (pi - second)))
         return left if left > 0.0 else 0.0
 
     return limit

@@ -13,7 +13,8 @@ from thrust_allocator.parameters.types import Real
 
 DOCUMENT = ROOT / 'doc/parameters.md'
 OF_EVERY_NODE = {'use_sim_time', 'start_type_description_service'}
-UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s', 'N*s/m', 'rad', 'rad*s/m', 'rev/s', 'm^2'}
+UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s', 'N*s/m', 'N*s^2/m^2', 'rad', 'rad*s/m',
+         'rev/s', 'm^2'}
 PLACE = {'position': [0.0, 0.0, 0.0], 'direction': [1.0, 0.0, 0.0], 'bollard_thrust': [-1.0, 1.0]}
 BARE = {  # one thruster of each description, with nothing given that has a default
     'measured': PLACE | {'model': 'propeller', 'speed_loss': [1.0, 1.0]},

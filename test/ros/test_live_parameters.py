@@ -24,6 +24,8 @@ MILLISECOND = 10**6  # [ns]
     (UP + 'bollard_thrust', [-50.0, 90.0], AHEAD),
     (UP + 'bollard_thrust', [-200.0, 0.0], AHEAD),
     (UP + 'speed_loss', [10.0, 60.0], AHEAD),
+    (UP + 'speed_loss_quadratic', [10.0, 20.0], AHEAD),
+    (UP + 'angle_law', 'cosine', AHEAD),
     (UP + 'critical_angle_slope', 0.5, AHEAD),
     (UP + 'critical_angle_min', 1.5, AHEAD),
     (UP + 'second_critical_angle_offset', -0.3, ASTERN),

@@ -71,3 +71,16 @@ def test_study_page_has_every_option():
     page = (ROOT / 'doc/study.md').read_text('utf-8')
     assert set(re.findall(r'`[^`\n]*(--\w+)', page)) | {'--output'} == {
         option for option in parser()._option_string_actions} - {'-h', '--help'}
+
+
+def test_links_lead_somewhere():
+    """Each link between the documents is to a file that exists, and to a heading in it."""
+    pages = [ROOT / 'README.md', *(ROOT / 'doc').glob('*.md')]
+    for page in pages:
+        links = re.findall(r'\]\(([^)#\s]*)#?([^)\s]*)\)', page.read_text('utf-8'))
+        for path, anchor in [link for link in links if '://' not in link[0]]:
+            target = page.parent / path if path else page
+            assert target.exists(), (page.name, path)
+            headings = [re.sub(r'[^\w\- ]', '', line).lower().replace(' ', '-') for line in
+                        re.findall(r'^#+ (.*)$', target.read_text('utf-8'), re.M)]
+            assert not anchor or anchor in headings, (page.name, anchor)

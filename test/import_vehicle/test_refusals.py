@@ -59,7 +59,7 @@ def test_one_line_each(refused, text, words):
     (column(0, 0, 0, 0, 0, 0.3), ['thruster_0', 'pure moment']),
     (column(0, 0, 0, 0, 0, 0), ['all 0']),
     (column(1, 0, 0, 0.4, 0, 0), ['0.4 N*m per newton along its own axis']),
-    (yaml.safe_dump({'tam': EYE[:5]}), ['tam: has 5 rows', '6 x n']),
+    (yaml.safe_dump({'tam': EYE[:5]}), ['tam: has 5 rows', 'transpose it', '6 x n']),
     (yaml.safe_dump({'tam': [*ONE[:5], [1.0, 2.0]]}), ['tam: its rows are not of the same length']),
     (yaml.safe_dump({'tam': [1.0] * 7}), ['tam: has 7 entries']),
     (yaml.safe_dump({'tam': ONE, 'b': {'tam': ONE}}),

@@ -87,7 +87,7 @@ def test_a_node_that_had_stopped(undrawn, replay, mt2012, tmp_path):
     ticks = table(tmp_path / 'out')
     assert ticks['stopped'].sum() == 10 and not ticks['up thrust [N]'][20:30].any()
     event, = found['events']
-    assert event['text'].startswith('the recorded node had stopped, for 0.20 s')
+    assert event['text'].startswith('the recorded node gave zeros in spite of a wrench, for 0.20 s')
 
 
 def test_the_recomputed_bag(undrawn, replay, mt2012, tmp_path):

@@ -47,8 +47,10 @@ def _candidates(document: Any) -> Iterator[Matrix]:
 
 def _array(rows: list[Any], path: str) -> np.ndarray:
     if len(rows) != 6:
-        raise SourceError(f'{path}: has {len(rows)} rows, must be 6 x n: surge, sway, heave, roll, '
-                          'pitch, yaw')
+        turned = ' (a row for each thruster? transpose it)' * all(
+            are_numbers(row, 6) for row in rows)
+        raise SourceError(f'{path}: has {len(rows)} rows{turned}, must be 6 x n: surge, sway, '
+                          'heave, roll, pitch, yaw')
     lengths = {len(row) if are_numbers(row) else 0 for row in rows}
     if len(lengths) > 1 or 0 in lengths:
         raise SourceError(f'{path}: its rows are not of the same length, or hold what is no '

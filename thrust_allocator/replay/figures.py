@@ -71,10 +71,8 @@ def energy_proxy(run: Run) -> float:
     The integral of the sum of (e / T0)^1.5, with e the Bollard-equivalent thrust: power goes with
     the cube of revolutions, thrust with their square.
     """
-    if len(run.ticks) < 2:
-        return 0.0
-    power = (np.abs(run.ticks['fractions'])**1.5).sum(axis=1)
-    return float(power[:-1] @ np.diff(run.ticks.times) * 1e-9)
+    times, power = np.array([*run.power, (run.ticks.times[-1], 0.0)]).T
+    return float(power[:-1] @ np.diff(times) * 1e-9)
 
 
 def differences(run: Run) -> np.ndarray:

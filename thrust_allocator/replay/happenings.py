@@ -10,6 +10,7 @@ from thrust_allocator.replay.run import Event, Run
 MANY = 5.0  # usual intervals without a message, from which on that is a gap
 SHORTEST = 0.2  # and the shortest time that is one [s]
 ALIKE = 0.005  # share of Bollard thrust that recorded and recomputed setpoints may be apart
+STARTING = 500 * 10**6  # [ns], in which a node may not be connected to all of its topics yet
 FEEDS = ('cmd_wrench', 'odom', 'twist', 'current', 'battery')
 
 
@@ -17,8 +18,8 @@ def happenings(run: Run, arrivals: Arrivals, end: int) -> list[Event]:
     """Return what happened, in the order of time."""
     ticks, times = run.ticks, run.ticks.times
     found = [*run.events, *_gaps(run, arrivals, end)]
-    found += [Event(start, f'the recorded node had stopped, for {seconds:.2f} s: disabled, or shut '
-                    'down')
+    found += [Event(start, f'the recorded node gave zeros in spite of a wrench, for {seconds:.2f} s: '
+                    'disabled, shut down, or not connected yet')
               for start, seconds in _spans(times, ticks['stopped'])]
     found += [Event(start, f'OSQP vouches for no result, for {seconds:.2f} s')
               for start, seconds in _spans(times, ~ticks['solved'])]
@@ -74,8 +75,11 @@ def explained(run: Run) -> dict[str, int]:
     slack = ALIKE * np.abs(around).max(axis=0) + 1e-9
     inside = ((recorded[far] >= around.min(axis=0) - slack)
               & (recorded[far] <= around.max(axis=0) + slack)).all(axis=1)
-    zero = ~recorded[far].any(axis=1)
-    causes = np.where(zero, 'recorded zeros: the node had stopped, or no wrench counted any more',
-                      np.where(inside, 'a message earlier or later than the recorder has it',
-                               'not explained'))
+    times, stopped = run.ticks.times, run.ticks['stopped']
+    since = times[far] - np.maximum.accumulate(np.where(stopped, times, run.start))[far]
+    causes = np.select(
+        [~recorded[far].any(axis=1), inside, since < STARTING], [
+            'recorded zeros: the node had stopped, or no wrench counted any more',
+            'a message earlier or later than the recorder has it',
+            'in the first half second after a start'], 'not explained')
     return dict(Counter(causes.tolist()))

@@ -17,6 +17,7 @@ from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.tick import Allocator
 
 LATENCY = 10**6  # [ns], which a tick takes from its inputs to its setpoints
+SAMPLE = 100 * 10**6  # [ns] between two looks at the power
 
 
 class Event(NamedTuple):
@@ -50,6 +51,9 @@ class Run:
                           else 'twist')
         self.ticks = Ticks(len(description.vehicle.thrusters))
         self.events: list[Event] = []
+        # Power (e / T0)^1.5 of all thrusters, e of Bollard-equivalent thrust, and when [ns, -]
+        self.power: list[tuple[int, float]] = []
+        self._sampled = -SAMPLE
         self._waiting: deque[Message] = deque()  # for the tick whose setpoints come next
         self._known_dropped: Counter[str] = Counter()
 
@@ -101,9 +105,10 @@ class Run:
             inputs.accept_velocity(messages.twist(content), now, 'twist')
         elif message.name == 'current' and self._velocity == 'odom':
             inputs.accept_current(messages.vector(content.vector), content.header.frame_id, now)
-        for cause in inputs.dropped - self._known_dropped:
-            self.events.append(Event(now, f'message dropped: {cause}'))
-        self._known_dropped = inputs.dropped.copy()
+        if inputs.dropped != self._known_dropped:
+            for cause in inputs.dropped - self._known_dropped:
+                self.events.append(Event(now, f'message dropped: {cause}'))
+            self._known_dropped = inputs.dropped.copy()
 
     def _change(self, message: Message) -> None:
         """Change what was changed while it was recorded, but for what was set by hand."""
@@ -145,10 +150,12 @@ class Run:
         tick = self._allocator.tick(self._inputs, time, self._enabled and not stopped)
         thrusters, thrusts = self.description.vehicle.thrusters, tick.thrusts.tolist()
         unit = self.description.parameters.values['setpoint_unit']
-        fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
-        setpoints = (fractions if unit == 'bollard_fraction' else
-                     SETPOINTS[unit](thrusts, thrusters, tick.flow))
+        setpoints = SETPOINTS[unit](thrusts, thrusters, tick.flow)
+        if time >= self._sampled + SAMPLE:
+            fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
+            self.power.append((time, sum(abs(fraction)**1.5 for fraction in fractions)))
+            self._sampled = time
         velocity = tick.motion.twist
         if velocity is None:
             velocity = (*self._allocator.settings.fallback_velocity, 0.0, 0.0, 0.0)
-        self.ticks.add(time, tick, velocity, setpoints, fractions, recorded, stopped)
+        self.ticks.add(time, tick, velocity, setpoints, recorded, stopped)

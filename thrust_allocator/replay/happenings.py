@@ -18,8 +18,8 @@ def happenings(run: Run, arrivals: Arrivals, end: int) -> list[Event]:
     """Return what happened, in the order of time."""
     ticks, times = run.ticks, run.ticks.times
     found = [*run.events, *_gaps(run, arrivals, end)]
-    found += [Event(start, f'the recorded node gave zeros in spite of a wrench, for {seconds:.2f} s: '
-                    'disabled, shut down, or not connected yet')
+    found += [Event(start, 'the recorded node gave zeros in spite of a wrench, for '
+                    f'{seconds:.2f} s: disabled, shut down, or not connected yet')
               for start, seconds in _spans(times, ticks['stopped'])]
     found += [Event(start, f'OSQP vouches for no result, for {seconds:.2f} s')
               for start, seconds in _spans(times, ~ticks['solved'])]

@@ -234,12 +234,21 @@ def test_a_coefficient_of_another_model_is_refused(name):
 def test_an_unknown_name_elsewhere_is_a_warning():
     """Unknown names at node level are ignored, with a warning for each in a fixed order."""
     unknown = [f'zzzzz{digit}' for digit in '4071526']
-    parameters = read_parameters(vehicle(dict.fromkeys([*unknown, 'rte'])))
+    measured = vehicle({DOWN + 'speed_loss': [24.0, 42.2]}, without=PROPELLER)
+    parameters = read_parameters(measured | dict.fromkeys([*unknown, 'rte']))
     assert parameters.warnings == (
         'rte: is no parameter here; did you mean rate?; it is ignored',
         *(f'{name}: is no parameter here; it is ignored' for name in sorted(unknown)))
-    assert parameters.values == read_parameters(vehicle()).values
-    assert read_parameters(vehicle()).warnings == ()
+    assert parameters.values == read_parameters(measured).values
+    assert read_parameters(measured).warnings == ()
+
+
+def test_a_loss_in_reverse_that_is_scaled_is_a_warning():
+    """Nobody has measured it; a thruster that cannot reverse has none."""
+    assert read_parameters(vehicle()).warnings == (
+        'the speed loss of down in reverse is scaled from the forward one, which is optimistic: '
+        'measure it, and give speed_loss instead of propeller',)
+    assert read_parameters(vehicle({DOWN + 'bollard_thrust': [0.0, 120.1]})).warnings == ()
 
 
 @pytest.mark.parametrize('one', [1, '1.0e0', '1e0', '+1.0E+00', '10.0e-1', '.1e1'])

@@ -62,6 +62,7 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
         warnings.append(f'{mistake}; it is ignored')
     values = {name: _read(given, name, definition) for name, definition in definitions.items()}
     _check_together(values, thrusters)
+    warnings += _scaled_losses(values, thrusters)
     return Parameters(MappingProxyType(values), MappingProxyType(definitions),
                       tuple(sorted(warnings)))
 
@@ -131,6 +132,15 @@ def _check_propeller(values: Mapping[str, Any], prefix: str) -> None:
     if max(speed_loss) > LARGEST:
         raise ParameterError.wrong(f'{prefix}propeller', speed_loss,
                                    f'such that speed_loss is at most {LARGEST:g}')
+
+
+def _scaled_losses(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> list[str]:
+    """Say whose loss in reverse nobody has measured: it is scaled from the forward one."""
+    scaled = [name for name in thrusters if f'thrusters.{name}.propeller.diameter' in values
+              and values[f'thrusters.{name}.bollard_thrust'][0]]
+    return [f'the speed loss of {", ".join(scaled)} in reverse is scaled from the forward one, '
+            'which is optimistic: measure it, and give speed_loss instead of propeller'
+            ] if scaled else []
 
 
 def _check_cosine(values: Mapping[str, Any], prefix: str) -> None:

@@ -46,6 +46,9 @@ MOVING = sdf('<link name="arm"/><joint name="servo" type="revolute"><parent>base
     ('', ['holds no keys']),
     ('just words', ['holds no keys']),
     ('a: [1, 2', ['is no YAML']),
+    ('tam: &a [*a]', ['tam: has 1 rows']),
+    ('tam: &a {b: *a}', ['is nested too deeply']),
+    (sdf('', 'new'), ['no thruster plugin']),
     ('rate: 50', ['neither an allocation matrix', 'nor a layout'])])
 def test_one_line_each(refused, text, words):
     """One line that names the thing, its place and the way out."""

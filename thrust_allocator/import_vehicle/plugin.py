@@ -64,8 +64,8 @@ def _converted(plugin: Element) -> tuple[float | None, float | None]:
         return None, None
     efficiency = _number(plugin, 'thrust_efficiency')
     efficiency = 1.0 if efficiency is None else efficiency
-    outputs = [float(word) for word in _text(conversion, 'outputValues').split()]
-    if outputs:
+    outputs = [_finite(word) for word in _text(conversion, 'outputValues').split()]
+    if outputs and None not in outputs:
         return efficiency * min(outputs), efficiency * max(outputs)
     constant = _number(conversion, 'rotorConstant')
     ends = [_number(plugin, 'clampMin'), _number(plugin, 'clampMax')]
@@ -87,8 +87,12 @@ def _text(element: Element, tag: str) -> str:
 
 
 def _number(element: Element, tag: str) -> float | None:
+    return _finite(_text(element, tag))
+
+
+def _finite(text: str) -> float | None:
     try:
-        number = float(_text(element, tag))
+        number = float(text)
     except ValueError:
         return None
     return number if math.isfinite(number) else None

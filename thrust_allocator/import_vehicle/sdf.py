@@ -25,7 +25,7 @@ class SdfModel:
 
     def __init__(self, root: Element, version: str) -> None:
         self.origin = f'the frame of model {root.get("name", "?")}'
-        self._old_axes = tuple(map(int, version.split('.')[:2])) < (1, 5)
+        self._old_axes = version in ('1.0', '1.2', '1.3', '1.4')  # in the model's frame
         self._frames: dict[str, _Frame] = {}
         self._joints: dict[str, tuple[str, Element]] = {}  # by full name: scope, element
         self._read(root, '')

@@ -29,6 +29,8 @@ def read_source(path: Path, frame: str | None = None,
         found, centre = _read(path, frame)
     except OSError as error:
         raise SourceError(f'{path}: cannot be read: {error.strerror}') from None
+    except RecursionError:
+        raise SourceError(f'{path}: is nested too deeply') from None
     except SourceError as error:
         raise SourceError(f'{path}: {error}') from None
     if origin is None and centre is None:

@@ -13,6 +13,10 @@ from thrust_allocator.study import style
 
 _BINS = 1200  # points of a line; of more ticks than twice that, the largest and smallest of each
 _GAP = '#F3D9CC'
+# Solid, for dashes are lost where a line swings fast; the wider one shows from under the other
+_COMMANDED = {'color': style.line(0)['color'], 'lw': 2.4}
+_ACHIEVED = {'color': style.line(5)['color'], 'lw': 1.0}
+_THRUST = {'color': style.line(1)['color'], 'lw': 1.0}
 _UNITS = ('N', 'N', 'N', 'N m', 'N m', 'N m')
 
 
@@ -42,7 +46,7 @@ def _setpoints(run: Run, bag: str, path: Path) -> None:
     title = f'{run.name} on {bag}: thrust inside its moving limits'
     figure, axes = style.panels(
         -(-len(names) // 2), min(2, len(names)), 1.7, title,
-        [Line2D([], [], label='thrust', **style.line(1)),
+        [Line2D([], [], label='thrust', **_THRUST),
          Patch(color=style.BOUNDS, label='limits')], sharex=True)
     x = _seconds(run)
     for i, (name, one) in enumerate(zip(names, axes.ravel())):
@@ -50,7 +54,7 @@ def _setpoints(run: Run, bag: str, path: Path) -> None:
         low, high = run.ticks['lower'][:, i], run.ticks['upper'][:, i]
         grid, (lowest, _), (_, highest) = _thin(x, low, high)
         one.fill_between(grid, lowest, highest, color=style.BOUNDS, lw=0.0)
-        _curve(one, x, run.ticks['thrusts'][:, i], 1)
+        _curve(one, x, run.ticks['thrusts'][:, i], _THRUST)
     style.finish(axes, len(names), 'time [s]')
     style.save(figure, path)
 
@@ -77,16 +81,16 @@ def _saturated(run: Run, bag: str, path: Path) -> None:
 def _wrench(run: Run, bag: str, path: Path) -> None:
     figure, axes = style.panels(
         3, 2, 1.7, f'{run.name} on {bag}: commanded and achieved wrench',
-        [Line2D([], [], label='commanded', **style.line(0)),
-         Line2D([], [], label='achieved', **style.line(2)),
+        [Line2D([], [], label='commanded', **_COMMANDED),
+         Line2D([], [], label='achieved', **_ACHIEVED),
          Patch(color=_GAP, label='no wrench, or stopped')], sharex=True)
     x = _seconds(run)
     for i, dof in enumerate(DOFS):
         one = axes.T.ravel()[i]
         _panel(one, dof, _UNITS[i], x)
         _shade(one, x, ~run.ticks['live'])
-        _curve(one, x, run.ticks['wrench'][:, i], 0)
-        _curve(one, x, run.ticks['achieved'][:, i], 2)
+        _curve(one, x, run.ticks['wrench'][:, i], _COMMANDED)
+        _curve(one, x, run.ticks['achieved'][:, i], _ACHIEVED)
     style.finish(axes, 6, 'time [s]')
     style.save(figure, path)
 
@@ -102,7 +106,7 @@ def _motion(run: Run, bag: str, path: Path) -> None:
                                      (axes[1, 0], 'angle of attack', 'degrees', angle)):
         _panel(one, title, unit, x)
         _shade(one, x, run.ticks['stale'])
-        _curve(one, x, values, 1)
+        _curve(one, x, values, _THRUST)
     style.finish(axes, 2, 'time [s]')
     style.save(figure, path)
 
@@ -115,14 +119,13 @@ def _panel(axes: Axes, title: str, unit: str, x: np.ndarray) -> None:
     style.over_speed(axes, (x[0], max(x[-1], x[0] + 1e-3)), title, unit)
 
 
-def _curve(axes: Axes, x: np.ndarray, y: np.ndarray, line: int) -> None:
+def _curve(axes: Axes, x: np.ndarray, y: np.ndarray, line: dict) -> None:
     """Draw a line; of many ticks its highest and lowest points."""
     grid, (low, high) = _thin(x, y)
     if len(grid) == len(x):
-        axes.plot(x, y, lw=1.2, **style.line(line))
-        return
-    axes.plot(np.repeat(grid, 2), np.stack([low, high], axis=1).ravel(),
-              color=style.line(line)['color'], lw=0.8)
+        axes.plot(x, y, **line)
+    else:
+        axes.plot(np.repeat(grid, 2), np.stack([low, high], axis=1).ravel(), **line)
 
 
 def _thin(x: np.ndarray, *curves: np.ndarray) -> tuple:

@@ -35,7 +35,7 @@ def write_report(path: Path, command: str, bag: Path, topics: Mapping[str, str],
 def _about(run: Run, topics: Mapping[str, str], as_recorded: bool) -> list[str]:
     ticks = ('when `thruster_setpoints` were recorded' if as_recorded else
              "by the node's own schedule, for no setpoints were recorded")
-    return [f'Ticks come {ticks}. Topics: '
+    return [f'Ticks come {ticks}. Wrenches are in the axes of the topics. Topics: '
             + ', '.join(f'`{name}` from `{topic}`' for topic, name in sorted(topics.items())) + '.']
 
 

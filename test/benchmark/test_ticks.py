@@ -1,13 +1,8 @@
 """The benchmark's ticks: exact, deterministic, and solved in few iterations. Nothing is timed."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from support.optimum import daqp_optimum
-from support.processes import run
-from thrust_allocator.benchmark.solvers import Measured, RIVALS
 from thrust_allocator.benchmark.ticks import (
     mt2012, paper_sweep, random_vehicle, smooth_walk, switching_walk, Walk)
 from thrust_allocator.solve.problem import AllocationProblem
@@ -67,38 +62,3 @@ def test_walks_do_what_they_are_for():
     assert 100 < turned.sum() < 500, 'all components at once, about once a second'
     off = np.array([~tick.limits.any(axis=0) for tick in WALKS['switching']().ticks])
     assert (off.any(axis=0) & ~off.all(axis=0)).all()
-
-
-def test_a_peer_that_is_not_installed_is_reported(monkeypatch):
-    """The table has a row for every peer, and says of one that it is missing."""
-    monkeypatch.setitem(sys.modules, 'quadprog', None)
-    rows = Measured(paper_sweep(20), repeats=1).table().splitlines()[2:]
-    assert [row.split('|')[1].strip() for row in rows] == [peer.name for peer in RIVALS]
-    row, = (row for row in rows if row.startswith('| quadprog '))
-    assert row.split('|')[2].strip() == 'missing'
-
-
-def command(*arguments: str) -> subprocess.CompletedProcess:
-    """Run the benchmark's command as a stranger would."""
-    return run('-m', 'thrust_allocator.benchmark', *arguments)
-
-
-def test_command_prints_a_row_for_every_peer():
-    """A quick run of the solvers: the machine, and one row per peer and sequence of ticks."""
-    done = command('--quick', 'solvers')
-    assert (done.returncode, done.stderr) == (0, '')
-    assert 'Python' in done.stdout and 'numpy' in done.stdout
-    for peer in RIVALS:
-        assert done.stdout.count(f'\n| {peer.name} ') == 3
-
-
-@pytest.mark.parametrize('arguments, named', [
-    (('solver',), 'solver is no part, must be one of solvers, growth, node'),
-    (('solvers', '--plot', 'x.svg'), '--plot draws the growth'),
-    (('--plot', '/nowhere/x.svg'), '/nowhere/x.svg must end in .svg'),
-    (('--plot', 'x.png'), 'x.png must end in .svg')])
-def test_mistakes_on_the_command_line(arguments, named):
-    """A mistake ends in one plain sentence, before anything is measured."""
-    done = command(*arguments)
-    assert (done.returncode, done.stdout) == (2, '')
-    assert named in done.stderr and 'Traceback' not in done.stderr

@@ -122,7 +122,7 @@ def path(tmp_path_factory):
 
 
 def vehicle_or_one_line(path):
-    """Check that a file describes a vehicle that allocates, or return the line that says why not."""
+    """Check that a file describes a vehicle that allocates; else return the line why not."""
     try:
         vehicle = load_vehicle(path)
         problem, bounds = AllocationProblem(vehicle), ThrustBounds(vehicle)

@@ -11,6 +11,7 @@ from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.models import Constant
+from thrust_allocator.physics.vehicle import Thruster
 
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
 COLUMNS = {  # physics: x forward, y starboard, z down; thrust axes meet the hull axis ahead
@@ -221,3 +222,10 @@ def test_changing_what_was_read_changes_no_parameter():
     values['thruster_names'].append('x')
     parameters.of_thruster('up')['weight'] = 99.0
     assert dict(parameters.values) == before
+
+
+def test_a_thruster_is_plain_unless_said_otherwise():
+    """Of weight 1, on, without reaction torque, rate limit or cut-off."""
+    one = Thruster('t', (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), Constant((-10.0, 20.0)))
+    assert (one.weight, one.enabled, one.max_rate, one.cutoff) == (1.0, True, 0.0, 0.0)
+    assert one.column.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, -1.0]

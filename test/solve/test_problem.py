@@ -41,6 +41,7 @@ def test_paper_test_gives_the_tables_thrusts(row):
     assert allocation.thrusts == pytest.approx(thrusts, abs=0.006)
     assert allocation.achieved[[PITCH, HEAVE]] == pytest.approx((pitch, heave), abs=0.006)
     assert allocation.achieved + allocation.unallocated == pytest.approx(wrench)
+    assert (allocation.reach, allocation.direction_scale, allocation.power_scale) == (1.0,) * 3
 
 
 def test_bollard_bounds_leave_the_tunnel_its_share():

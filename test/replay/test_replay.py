@@ -187,7 +187,11 @@ def test_schedule_of_the_contract():
     assert list(schedule.until(75 * ms)) == [20 * ms, 50 * ms]
     assert list(schedule.until(115 * ms)) == [80 * ms, 110 * ms, 113 * ms + 1]
     values['tick_on_wrench'] = False
-    assert list(Schedule(values, 0).until(61 * ms)) == [20 * ms, 40 * ms, 60 * ms]
+    schedule = Schedule(values, 0)
+    assert list(schedule.until(61 * ms)) == [20 * ms, 40 * ms, 60 * ms]
+    year = 365 * 86400 * 1000 * ms  # a silence, or a damaged time
+    assert len(list(schedule.until(year))) == 3000
+    assert list(schedule.until(year + 41 * ms)) == [year + 20 * ms, year + 40 * ms]
 
 
 def test_a_long_recording_is_thinned_for_the_pictures(replay, mt2012, tmp_path):

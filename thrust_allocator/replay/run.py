@@ -143,7 +143,8 @@ class Run:
             self._use(self._waiting.popleft())
         recorded = np.asarray(message.content.data, dtype=float)
         wrench = self._inputs.live_wrench(message.time, self._allocator.settings.timeouts)
-        stopped = not recorded.any() and wrench is not None and bool(wrench.any())
+        stopped = (len(recorded) > 0 and not recorded.any()
+                   and wrench is not None and bool(wrench.any()))
         self._tick(message.time, recorded, stopped)
 
     def _tick(self, time: int, recorded: np.ndarray | None = None, stopped: bool = False) -> None:

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from math import inf
 from typing import Any
 
+SILENCE = 60 * 10**9  # [ns]
+
 
 class Schedule:
     """
@@ -15,6 +17,7 @@ class Schedule:
     def __init__(self, values: Mapping[str, Any], start: int) -> None:
         """Begin at a time [ns], with checked parameters by name."""
         self._last: float = start  # tick [ns]
+        self._heard = start  # of a message [ns]
         self._last_by_wrench, self._due, self._expiry = -inf, inf, inf  # [ns]
         self.change(values)
 
@@ -31,8 +34,16 @@ class Schedule:
             self._due = min(self._due, max(now, self._last_by_wrench + self._period // 2))
 
     def until(self, time: int) -> Iterator[int]:
-        """Yield the times of the ticks that come before a time [ns]."""
+        """
+        Yield the times of the ticks that come before a time [ns], when the next message does.
+
+        In a long silence all are alike: after a minute of it none are made.
+        """
+        silent, self._heard = self._heard + SILENCE, time
         while (moment := self._next()) < time:
+            if moment > silent:
+                self._last = time
+                return
             if moment == self._due:
                 self._last_by_wrench, self._due = moment, inf
             if moment >= self._expiry:

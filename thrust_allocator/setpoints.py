@@ -23,6 +23,7 @@ def _bollard_fraction(thrusts: list[float], thrusters: Sequence[Thruster],
 
 
 # What a setpoint may stand for: the thrust wanted in the flow [N], or what a driver calibrated at
-# rest must be told to deliver it, in newtons or as a share of Bollard thrust
+# rest must be told to deliver it, in newtons or as a share of Bollard thrust; a fin's servo its
+# deflection in radians, or as a share of the largest
 SETPOINTS = {'newton': _newton, 'bollard_newton': _bollard_newton,
              'bollard_fraction': _bollard_fraction}

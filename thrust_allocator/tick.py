@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from thrust_allocator.inputs import Inputs, Motion, Smoothing, Timeouts
 from thrust_allocator.parameters.build import Description
-from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
+from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.flow import Flow
 from thrust_allocator.physics.frames import frd_signs
+from thrust_allocator.physics.rate import RateLimits
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import Allocation, AllocationProblem
 
@@ -54,7 +55,7 @@ class Tick:
 class Past:
     """What one tick leaves to the next, whatever is changed between them."""
 
-    setpoints: np.ndarray  # last published, (p,) [N]
+    stand: np.ndarray  # where each thruster is: its thrust, or a fin's deflection, (p,) [N, rad]
     time: int | None = None  # of the last tick [ns]
     fade: float = 0.0  # how far the limits have gone over to the fallback's, [0, 1]
 
@@ -82,9 +83,7 @@ class Allocator:
         self._past = Past(np.zeros(len(vehicle.thrusters))) if past is None else past
         self._bounds = ThrustBounds(vehicle)
         self.signs = frd_signs(settings.message_frame)
-        max_rates = np.array([thruster.max_rate for thruster in vehicle.thrusters])
-        self._unlimited = max_rates == 0.0
-        self._max_rates = max_rates  # [N/s]
+        self._rates = RateLimits(vehicle.thrusters)
         self._smoothing = Smoothing(
             settings.velocity_time_constant * 1e9, settings.timeouts.velocity or math.inf)
         self._fallback_flow = self._bounds.flow(
@@ -113,15 +112,13 @@ class Allocator:
         flow, limits = self._limits(motion, now)
         past.time = now
         if wrench is None or not enabled:
-            past.setpoints = np.zeros_like(past.setpoints)
-            return Tick(limits, past.setpoints, np.zeros(6),
+            past.stand = np.zeros_like(past.stand)
+            return Tick(limits, past.stand, np.zeros(6),
                         np.zeros(6) if wrench is None else wrench, flow, enabled,
                         wrench, motion)
-        if not self._unlimited.all():
-            step = np.where(self._unlimited, np.inf, self._max_rates * elapsed)  # [N]
-            limits = rate_limited(limits, past.setpoints, step)
+        limits = self._rates(limits, past.stand, flow, elapsed)
         allocation = self._problem.solve(self.signs * wrench, limits)
-        past.setpoints = allocation.thrusts
+        past.stand = self._rates.stand(allocation.thrusts, flow)
         return Tick(limits, allocation.thrusts, self.signs * allocation.achieved,
                     self.signs * allocation.unallocated, flow, enabled, wrench, motion,
                     allocation)

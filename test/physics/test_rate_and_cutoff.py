@@ -7,8 +7,9 @@ import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from support.vehicles import limits_of, mt2012, propeller, thruster
-from thrust_allocator.physics.bounds import rate_limited, ThrustBounds
+from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.models import Constant, Tunnel
+from thrust_allocator.physics.rate import rate_limited
 
 SIZE = 4
 thrusts = st.lists(st.floats(-200.0, 200.0), min_size=SIZE, max_size=SIZE).map(np.array)

@@ -13,7 +13,8 @@ from thrust_allocator.parameters.types import Real
 
 DOCUMENT = ROOT / 'doc/parameters.md'
 OF_EVERY_NODE = {'use_sim_time', 'start_type_description_service'}
-UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s', 'N*s/m', 'N*s^2/m^2', 'rad', 'rad*s/m',
+UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s or rad/s', 'N*s/m', 'N*s^2/m^2', 'rad', '1/rad',
+         'rad*s/m',
          'rev/s', 'm^2'}
 PLACE = {'position': [0.0, 0.0, 0.0], 'direction': [1.0, 0.0, 0.0], 'bollard_thrust': [-1.0, 1.0]}
 BARE = {  # one thruster of each description, with nothing given that has a default
@@ -21,7 +22,10 @@ BARE = {  # one thruster of each description, with nothing given that has a defa
     'computed': PLACE | {'model': 'propeller', 'propeller': {
         'diameter': 0.1, 'max_revolutions': 10.0, 'thrust_slope': 0.5}},
     'tunnel': PLACE | {'model': 'tunnel', 'area': 0.1, 'decay': 1.0},
-    'constant': PLACE | {'model': 'constant'}}
+    'constant': PLACE | {'model': 'constant'},
+    'fin': {'model': 'fin', 'position': [0.0, 0.0, 0.0], 'direction': [0.0, 1.0, 0.0],
+            'chord': [1.0, 0.0, 0.0], 'fin_area': 0.01, 'lift_slope': 3.0, 'max_deflection': 0.5,
+            'cut_in_speed': 0.5}}
 
 
 @pytest.fixture

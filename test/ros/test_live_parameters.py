@@ -7,7 +7,7 @@ from rclpy.parameter import Parameter
 from support.live_parameters import AHEAD, ASTERN, change, expected, GENTLE, TWIST, UP
 from support.stepped_peer import is_stopped, PERIOD
 from support.vehicles import mt2012
-from thrust_allocator.physics.bounds import rate_limited
+from thrust_allocator.physics.rate import rate_limited
 from thrust_allocator.solve.problem import AllocationProblem
 
 STILL = np.zeros(6)

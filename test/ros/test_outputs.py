@@ -44,7 +44,7 @@ def test_thruster_states(stepped, unit):
     tick, (state,) = answer(one, [listen(one, JointState, 'thruster_states')])
     assert state.name == NAMES
     assert_allclose(state.effort, plain, atol=1e-9)
-    assert len(state.position) == len(state.velocity) == 0
+    assert list(state.position) == [0.0] * 5 and len(state.velocity) == 0
     assert state.header.stamp.sec * 10**9 + state.header.stamp.nanosec == one.time
     if unit == 'newton':
         assert_array_equal(state.effort, tick['thruster_setpoints'])

@@ -20,9 +20,9 @@ def random_ticks(seed: int, vehicles: int, ticks: int):
     """Yield (problem, vehicle, wrench, limits): random motion, up to five times the reachable."""
     rng = np.random.default_rng(seed)
     for _ in range(vehicles):
-        vehicle = random_vehicle(rng)
+        vehicle = random_vehicle(rng, fins=0.3)
         problem, bounds = AllocationProblem(vehicle), ThrustBounds(vehicle)
-        reverse, forward = vehicle.bollard_thrust
+        reverse, forward = vehicle.reference_limits
         for _ in range(ticks):
             limits = bounds(rng.normal(size=6) * rng.choice([0.0, 0.3, 1.5]))
             limits[:, rng.random(limits.shape[1]) < 0.1] = 0.0
@@ -96,7 +96,7 @@ def test_equals_a_second_solver_on_random_vehicles():
         assert allocation.solved and allocation.iterations == 1
         assert (limits[0] <= allocation.thrusts).all() and (allocation.thrusts <= limits[1]).all()
         error = np.abs(allocation.thrusts - daqp_optimum(vehicle, wrench, limits)).max()
-        worst = max(worst, error / np.abs(vehicle.bollard_thrust).max())
+        worst = max(worst, error / np.abs(vehicle.reference_limits).max())
     assert worst <= 1e-6
 
 

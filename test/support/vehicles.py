@@ -7,7 +7,7 @@ from support.paths import CONFIG
 from thrust_allocator.parameters.build import describe, load_vehicle
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.physics.bounds import ThrustBounds
-from thrust_allocator.physics.models import Constant, Propeller, ThrusterModel, Tunnel
+from thrust_allocator.physics.models import Constant, Fin, Propeller, ThrusterModel, Tunnel
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 # The table of the paper's test, recomputed: speed; thrusts down, left, up, right, tunnel; limits of
@@ -63,21 +63,38 @@ def propeller(**changes) -> Propeller:
     return Propeller(**coefficients | changes)
 
 
-def random_vehicle(rng: np.random.Generator, thrusters: int | None = None) -> Vehicle:
-    """Return a vehicle of 4 to 12 thrusters of all models, R from 1e1 to 1e6, some of them 0."""
+def fin(**changes) -> Fin:
+    """Return the fin of the table of closed forms with some coefficients changed."""
+    coefficients = {'chord': (1.0, 0.0, 0.0), 'gain': 0.5 * 1000.0 * 0.0062 * 3.0,
+                    'max_deflection': math.radians(30.0), 'cut_in_speed': 0.5, 'astern_share': 0.5}
+    return Fin(**coefficients | changes)
+
+
+def random_vehicle(rng: np.random.Generator, thrusters: int | None = None,
+                   fins: float = 0.0) -> Vehicle:
+    """
+    Return a vehicle of 4 to 12 thrusters of all models, R from 1e1 to 1e6, some of them 0.
+
+    :param fins: share of them that are fins.
+    """
     count = thrusters or int(rng.integers(4, 13))
     wrench_weights = 10.0**rng.uniform(1.0, 6.0, 6) * (rng.random(6) < 0.85)
     if not wrench_weights.any():
         wrench_weights[0] = 1e3
-    return Vehicle(tuple(_random_thruster(rng, i) for i in range(count)),
+    return Vehicle(tuple(_random_thruster(rng, i, fins) for i in range(count)),
                    tuple(wrench_weights.tolist()))
 
 
-def _random_thruster(rng: np.random.Generator, index: int) -> Thruster:
+def _random_thruster(rng: np.random.Generator, index: int, fins: float = 0.0) -> Thruster:
     direction = rng.normal(size=3)
     if rng.random() < 0.3:  # along an axis, as most real thrusters are: makes B degenerate
         direction = np.eye(3)[rng.integers(3)]
     direction /= np.linalg.norm(direction)
+    if fins and rng.random() < fins:
+        chord = np.cross(direction, rng.normal(size=3))
+        chord /= np.linalg.norm(chord)
+        return thruster(f't{index}', tuple(rng.uniform(-2.0, 2.0, 3)), tuple(direction), fin(
+            chord=tuple(chord), gain=rng.uniform(5.0, 200.0)), rng.choice([1.0, 0.1]))
     reverse = 0.0 if rng.random() < 0.1 else -rng.uniform(20.0, 150.0)
     bollard = reverse, rng.uniform(20.0, 150.0)
     model: ThrusterModel = (

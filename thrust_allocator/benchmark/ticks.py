@@ -97,7 +97,7 @@ def random_vehicle(thrusters: int, seed: int = 0) -> Vehicle:
 
 def _wrenches(rng: np.random.Generator, vehicle: Vehicle, count: int, share: float) -> np.ndarray:
     """Return wandering wrenches, (count, 6), 0 in the DOFs that are not controlled."""
-    reach = np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.bollard_thrust).mean(axis=0)
+    reach = np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.reference_limits).mean(axis=0)
     reach[np.array(vehicle.wrench_weights) == 0.0] = 0.0
     return share * reach * _filtered_noise(rng, count, TIME_OF_WRENCH)
 

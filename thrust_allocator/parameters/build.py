@@ -15,6 +15,9 @@ from thrust_allocator.physics.vehicle import Thruster, Vehicle
 from thrust_allocator.solve.conditioning import IllConditioned
 from thrust_allocator.solve.problem import AllocationProblem
 
+# Of a thruster; what one of its model does not have keeps its default
+WHATEVER_THE_MODEL = ('weight', 'torque_ratio', 'max_rate', 'cutoff', 'enabled')
+
 
 @dataclass(frozen=True)
 class Description:
@@ -85,5 +88,5 @@ def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:
     direction = signs * direction / np.linalg.norm(direction)
     return Thruster(
         name, tuple((signs * values['position']).tolist()), tuple(direction.tolist()),
-        MODELS[values['model']].from_values(values), values['weight'], values['torque_ratio'],
-        values['max_rate'], values['cutoff'], values['enabled'])
+        MODELS[values['model']].from_values(values),
+        **{name: values[name] for name in WHATEVER_THE_MODEL if name in values})

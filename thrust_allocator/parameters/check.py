@@ -3,17 +3,15 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 import difflib
-from math import isclose
 from types import MappingProxyType
 from typing import Any
 
 from thrust_allocator.parameters.definition import Definition, REQUIRED
-from thrust_allocator.parameters.models import MODEL_PARAMETERS, PAPER_ANGLES
+from thrust_allocator.parameters.models import MODEL_PARAMETERS
 from thrust_allocator.parameters.table import NODE, THRUSTER, THRUSTER_NAMES
-from thrust_allocator.parameters.types import LARGEST, ParameterError
+from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.models import MODELS
-from thrust_allocator.physics.models.propeller import speed_loss_of_propeller
 
 LONGEST_PERIOD = 2.0**63  # that a clock can hold [ns]
 
@@ -91,6 +89,9 @@ def _coefficients(given: Mapping[str, Any], prefix: str) -> tuple[Definition, ..
     name = prefix + 'model'
     model = _read(given, name, next(one for one in THRUSTER if one.name == 'model'))
     parameters = MODEL_PARAMETERS[MODELS[model]]
+    for other, why in parameters.instead.items():
+        if prefix + other in given:
+            raise ParameterError(f'{prefix}{other}: is given, must be left out: a {model} {why}')
     if not parameters.either:
         return parameters.always
     groups = {prefix + group[0].name.partition('.')[0]: group for group in parameters.either}
@@ -111,27 +112,9 @@ def _check_together(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> No
                                    'large enough for its period to fit a clock')
     if not any(values[f'wrench_weights.{dof}'] for dof in DOFS):
         raise ParameterError('wrench_weights: are all 0, must leave at least one DOF controlled')
-    for prefix in (f'thrusters.{thruster}.' for thruster in thrusters):
-        if f'{prefix}propeller.diameter' in values:
-            _check_propeller(values, prefix)
-        if values.get(f'{prefix}angle_law') == 'cosine':
-            _check_cosine(values, prefix)
-
-
-def _check_propeller(values: Mapping[str, Any], prefix: str) -> None:
-    """Refuse a propeller that gives no C, or one beyond what speed_loss may be."""
-    bollard_thrust = values[f'{prefix}bollard_thrust']
-    if bollard_thrust[1] == 0.0:
-        raise ParameterError.wrong(
-            f'{prefix}bollard_thrust', list(bollard_thrust),
-            '[reverse, forward] with forward > 0 where propeller is given; or give speed_loss')
-    speed_loss = speed_loss_of_propeller(
-        values[f'{prefix}propeller.thrust_slope'], values['water_density'],
-        values[f'{prefix}propeller.max_revolutions'], values[f'{prefix}propeller.diameter'],
-        bollard_thrust)
-    if max(speed_loss) > LARGEST:
-        raise ParameterError.wrong(f'{prefix}propeller', speed_loss,
-                                   f'such that speed_loss is at most {LARGEST:g}')
+    for thruster in thrusters:
+        model = MODELS[values[f'thrusters.{thruster}.model']]
+        MODEL_PARAMETERS[model].check(values, f'thrusters.{thruster}.')
 
 
 def _scaled_losses(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> list[str]:
@@ -141,15 +124,6 @@ def _scaled_losses(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> lis
     return [f'the speed loss of {", ".join(scaled)} in reverse is scaled from the forward one, '
             'which is optimistic: measure it, and give speed_loss instead of propeller'
             ] if scaled else []
-
-
-def _check_cosine(values: Mapping[str, Any], prefix: str) -> None:
-    """Refuse what only the paper's angle law would heed, unless it is the default, as in a dump."""
-    for name, _, default, *_ in PAPER_ANGLES:
-        if not isclose(values[prefix + name], default, rel_tol=1e-4):
-            raise ParameterError.wrong(prefix + name, values[prefix + name],
-                                       f'left out, or {default:.5g}, where angle_law is cosine, '
-                                       'which has no such angle')
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:

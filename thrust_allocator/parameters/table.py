@@ -3,7 +3,7 @@
 from thrust_allocator.parameters.definition import (
     ANY, Definition, NOT_NEGATIVE, POSITIVE, REQUIRED)
 from thrust_allocator.parameters.types import (
-    BollardThrust, Choice, Direction, Flag, Names, Real, Reals, Word)
+    Choice, Direction, Flag, Names, Real, Reals, Word)
 from thrust_allocator.physics.frames import DOFS, FRAMES
 from thrust_allocator.physics.models import MODELS
 
@@ -51,15 +51,9 @@ THRUSTER = (
                'from the body origin, in vehicle_frame axes', live=False),
     Definition('direction', Direction(), REQUIRED, '', 'of positive thrust on the vehicle',
                live=False),
-    Definition('bollard_thrust', BollardThrust(), REQUIRED, 'N',
-               'greatest thrust at rest [reverse, forward]'),
     Definition('enabled', Flag(), True, '',
                'whether the thruster may be used'),
     Definition('weight', POSITIVE, 1.0, '', 'Q: cost of its thrust squared'),
-    Definition('max_rate', NOT_NEGATIVE, 0.0, 'N/s',
-               'greatest change of thrust; 0: unlimited'),
-    Definition('cutoff', Real(0.0, 1.0, below=True), 0.0, '',
-               'share of Bollard thrust below which a limit is not worth using'),
-    Definition('torque_ratio', ANY, 0.0, 'm', 'k: reaction torque about direction per N',
-               live=False),
+    Definition('max_rate', NOT_NEGATIVE, 0.0, 'N/s or rad/s',
+               "greatest change of thrust, or of a fin's deflection; 0: unlimited"),
 )

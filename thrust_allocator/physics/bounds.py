@@ -33,23 +33,6 @@ class ThrustBounds:
         return np.array([law(*motion) for law, motion in zip(self._laws, flow)]).T.copy()
 
 
-def rate_limited(limits: np.ndarray, last: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """
-    Return the part of the limits that is within a step of the last setpoints.
-
-    Where none is, because the limits have moved away faster, the nearest limit: the speed bound
-    wins over the rate.
-
-    :param limits: (2, p), row 0 lower, row 1 upper [N].
-    :param last: (p,) last setpoints [N].
-    :param step: (p,) greatest change, infinite where there is no rate limit [N].
-    :return: (2, p) [N].
-    """
-    lower, upper = limits
-    return np.array((np.minimum(np.maximum(lower, last - step), upper),
-                     np.maximum(np.minimum(upper, last + step), lower)))
-
-
 def _law(thruster: Thruster) -> LimitsLaw:
     """Return the limits of a thruster as a function of its speed along and across its axis."""
     if not thruster.enabled:

@@ -14,7 +14,8 @@ class FlowAtThrusters:
     The map from the vehicle's velocity through the water to the motion of each thruster.
 
     Thruster i moves at v_i = v + omega x r_i. That is linear in (v, omega), and so are its
-    components along d_i and two axes across it: one matrix product gives them all.
+    components along d_i and two axes across it, a fin's chord first: one matrix product gives them
+    all.
     """
 
     def __init__(self, thrusters: Sequence[Thruster]) -> None:
@@ -39,5 +40,12 @@ def _components(thruster: Thruster) -> np.ndarray:
     """Return the (3, 6) map from (v, omega) to v_i along d_i and along two axes across it."""
     identity = np.eye(3)
     velocity = np.hstack([identity, np.cross(identity, thruster.position).T])  # v + omega x r_i
-    axes = np.linalg.svd(np.array([thruster.direction]))[2]  # rows: +d or -d, and two across it
-    return np.vstack([thruster.direction, axes[1:]]) @ velocity
+    return np.vstack([thruster.direction, axes_across(thruster)]) @ velocity
+
+
+def axes_across(thruster: Thruster) -> np.ndarray:
+    """Return two unit vectors across the thrust axis, (2, 3); the first is the chord, if any."""
+    chord = thruster.model.chord
+    if chord is None:
+        return np.linalg.svd(np.array([thruster.direction]))[2][1:]  # the first is +d or -d
+    return np.array([chord, np.cross(thruster.direction, chord)])

@@ -18,7 +18,7 @@ class Thruster:
     model: ThrusterModel  # what it can give, and how it loses that in a flow
     weight: float = 1.0  # Q [-]
     torque_ratio: float = 0.0  # k, reaction torque about d per newton of thrust [m]
-    max_rate: float = 0.0  # greatest change of thrust, 0: unlimited [N/s]
+    max_rate: float = 0.0  # greatest change, 0: unlimited [N/s; of a fin's deflection: rad/s]
     cutoff: float = 0.0  # kappa, share of Bollard thrust below which a limit is not worth using
     enabled: bool = True
 
@@ -50,6 +50,11 @@ class Vehicle:
     def bollard_thrust(self) -> np.ndarray:
         """The limits of thrust at rest, (2, p): row 0 lower (<= 0), row 1 upper (>= 0) [N]."""
         return _frozen(np.array([thruster.bollard_thrust for thruster in self.thrusters]).T.copy())
+
+    @cached_property
+    def reference_limits(self) -> np.ndarray:
+        """The limits at rest, but of a fin those at 1 m/s: what to scale by, (2, p) [N]."""
+        return _frozen(np.array([one.model.reference_limits for one in self.thrusters]).T.copy())
 
     def warnings(self) -> list[str]:
         """

@@ -69,7 +69,7 @@ def energy_proxy(run: Run) -> float:
     Return how long one thruster at full power would take for the energy that all of them took [s].
 
     The integral of the sum of (e / T0)^1.5, with e the Bollard-equivalent thrust: power goes with
-    the cube of revolutions, thrust with their square.
+    the cube of revolutions, thrust with their square. Fins take no part.
     """
     times, power = np.array([*run.power, (run.ticks.times[-1], 0.0)]).T
     return float(power[:-1] @ np.diff(times) * 1e-9)
@@ -78,7 +78,7 @@ def energy_proxy(run: Run) -> float:
 def differences(run: Run) -> np.ndarray:
     """Return, (n,), how far recorded and recomputed setpoints are apart, a share of Bollard."""
     ticks, vehicle = run.ticks, run.description.vehicle
-    scale = np.abs(vehicle.bollard_thrust).max(axis=0)
+    scale = np.abs(vehicle.reference_limits).max(axis=0)
     if run.description.parameters.values['setpoint_unit'] == 'bollard_fraction':
         scale = np.ones_like(scale)
     return (np.abs(ticks['recorded'] - ticks['setpoints']) / scale).max(axis=1)
@@ -97,7 +97,7 @@ def difference(run: Run) -> dict[str, float] | None:
 def _reach(run: Run) -> np.ndarray:
     """Return what all thrusters together could give of each DOF at rest, (6,) [N, N*m]."""
     vehicle = run.description.vehicle
-    return np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.bollard_thrust).max(axis=0)
+    return np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.reference_limits).max(axis=0)
 
 
 def _by_dof(values: np.ndarray) -> Mapping[str, float]:

@@ -154,7 +154,9 @@ class Run:
         setpoints = SETPOINTS[unit](thrusts, thrusters, tick.flow)
         if time >= self._sampled + SAMPLE:
             fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
-            self.power.append((time, sum(abs(fraction)**1.5 for fraction in fractions)))
+            self.power.append((time, sum(
+                abs(fraction)**1.5 for fraction, one in zip(fractions, thrusters)
+                if not one.model.DEFLECTS)))
             self._sampled = time
         velocity = tick.motion.twist
         if velocity is None:

@@ -9,7 +9,7 @@ from std_msgs.msg import ColorRGBA
 from thrust_allocator.physics.vehicle import Thruster
 from visualization_msgs.msg import Marker, MarkerArray
 
-LONGEST = 0.5  # length of the largest Bollard thrust, in spans of the vehicle
+LONGEST = 0.5  # length of the largest Bollard thrust, or lift at 1 m/s, in spans of the vehicle
 SHAFT = 0.02  # width of an arrow, likewise
 IDLE = 1e-3  # share of Bollard thrust below which an arrow would be a point
 FAINT = ColorRGBA(r=0.6, g=0.6, b=0.6, a=0.5)
@@ -32,7 +32,7 @@ def thruster_markers(thrusters: Sequence[Thruster], thrusts: np.ndarray, limits:
     :param frame: id of the body frame.
     """
     positions = np.array([signs * one.position for one in thrusters])
-    largest = max(max(map(abs, one.bollard_thrust)) for one in thrusters)  # [N]
+    largest = max(max(map(abs, one.model.reference_limits)) for one in thrusters)  # [N]
     span = float(np.linalg.norm(np.ptp(positions, axis=0))) or 1.0  # [m]
     markers = []
     for i, (one, position, thrust) in enumerate(zip(thrusters, positions, thrusts.tolist())):

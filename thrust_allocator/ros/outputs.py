@@ -74,6 +74,9 @@ class Outputs:
         if self._states_publisher.get_subscription_count():
             self._states.header.stamp = self._node.get_clock().now().to_msg()
             self._states.effort = array('d', wanted)
+            self._states.position = array('d', [
+                one.model.deflection(thrust, *motion)
+                for one, thrust, motion in zip(thrusters, wanted, tick.flow)])
             self._states_publisher.publish(self._states)
 
     def publish_zero_setpoints(self) -> None:

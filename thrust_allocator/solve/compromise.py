@@ -44,7 +44,7 @@ class Compromise:
             self._scaled = weights > 0.0
             self._attainable = AttainableSet(vehicle.configuration_matrix, weights, enabled)
             self._cone = Cone(vehicle.configuration_matrix, weights,
-                              vehicle.bollard_thrust * enabled)
+                              vehicle.reference_limits * enabled)
 
     def solve(self, wrench: np.ndarray, speed_limits: np.ndarray, limits: np.ndarray,
               power: Callable[[np.ndarray], float] | None = None) -> Allocation:

@@ -9,7 +9,7 @@ from thrust_allocator.solve.active_set import ActiveSet
 from thrust_allocator.solve.conditioning import require_precision, root, scaled
 from thrust_allocator.solve.osqp_solver import Solver, UNDECIDED
 
-TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest Bollard thrust
+TOLERANCE = 1e-9  # of OSQP's residuals, relative to the largest thrust or lift
 ROUNDING = 4.0 * np.finfo(float).eps  # of a sum, times its terms: one per thruster
 MAX_ITERATIONS = 4000  # OSQP's default; from the optimum it needs one
 
@@ -82,7 +82,7 @@ class AllocationProblem:
         self._settings = {
             'verbose': False, 'scaling': 0, 'polishing': False, 'check_termination': 1,
             'check_dualgap': False,
-            'eps_abs': TOLERANCE * np.abs(vehicle.bollard_thrust).max(),
+            'eps_abs': TOLERANCE * np.abs(vehicle.reference_limits).max(),
             # A wrench far out of reach makes a gradient so large that its rounding matters
             'eps_rel': self._rounding * singular[0] / singular[-1],
             'rho': float(np.clip(singular[0] * singular[-1], 1e-6, 1e6))}
@@ -145,4 +145,4 @@ def _essence(vehicle: Vehicle) -> tuple:
     """Return what the problem depends on, apart from what changes from tick to tick."""
     return (vehicle.wrench_weights, vehicle.configuration_matrix.tobytes(),
             tuple(thruster.weight for thruster in vehicle.thrusters),
-            np.abs(vehicle.bollard_thrust).max())
+            np.abs(vehicle.reference_limits).max())

@@ -36,7 +36,7 @@ class Authority:
     def __init__(self, vehicle: Vehicle) -> None:
         """Set up the programmes of a vehicle."""
         self._matrix = vehicle.configuration_matrix
-        self._largest = np.abs(vehicle.bollard_thrust).max()
+        self._largest = np.abs(vehicle.reference_limits).max()
         norms = np.linalg.norm(self._matrix, axis=1)
         self._norms = np.where(norms > 0.0, norms, 1.0)
         weights = vehicle.wrench_weights

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from thrust_allocator.physics.bounds import ThrustBounds
+from thrust_allocator.physics.flow import axes_across
 from thrust_allocator.physics.models import MODELS
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
@@ -31,12 +32,14 @@ def directions(thruster: Thruster, largest_speed: float) -> Directions:
     """
     Return the limits of a thruster that moves through the water in every direction.
 
+    Of a fin that is every direction in the plane of its lift and its chord.
+
     :param largest_speed: of the thruster [m/s].
     """
     alone = replace(thruster, position=(0.0, 0.0, 0.0), enabled=True)
     bounds = ThrustBounds(Vehicle((alone,), (0.0,) * 6))
     along = np.array(thruster.direction)
-    across = np.linalg.svd(along[np.newaxis])[2][1]  # any unit vector across the thrust axis
+    across = axes_across(thruster)[0]
     speeds = np.linspace(0.0, largest_speed, SPEEDS)
     angles = np.linspace(0.0, 180.0, ANGLES)
     limits = [[bounds(np.concatenate([

@@ -45,7 +45,7 @@ def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], alloc
     with look():
         figure, axes = panels(rows, columns, 2.25, 'Allocation against speed', legend,
                               sharex=True)
-        largest = 1.1 * np.abs(vehicle.bollard_thrust).max()
+        largest = 1.1 * np.abs([vehicle.bollard_thrust, *allocation.limits]).max()
         for i, (one, thruster) in enumerate(zip(axes.ravel(), vehicle.thrusters)):
             one.fill_between(speeds, *allocation.limits[:, :, i].T, color=BOUNDS, lw=0)
             one.plot(speeds, allocation.thrusts[:, moving, i], **thrust)
@@ -120,8 +120,8 @@ def draw_directions(path: Path, thruster: Thruster, found: Directions) -> None:
                               sharey=True)
         for one, side, name in zip(axes[0], (1, 0), ('forward', 'reverse')):
             limits = np.abs(found.limits[..., side])
-            bollard = abs(thruster.bollard_thrust[side]) or 1.0
-            levels = MaxNLocator(12).tick_values(limits.min(), bollard)
+            most = max(abs(thruster.bollard_thrust[side]), limits.max()) or 1.0
+            levels = MaxNLocator(12).tick_values(limits.min(), most)
             shades = one.contourf(found.angles, found.speeds, limits, levels, cmap='cividis')
             if np.ptp(limits) > 0.0:
                 middle = 0.5 * (levels[0] + levels[-1])

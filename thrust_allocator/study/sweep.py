@@ -48,12 +48,13 @@ def pseudo_inverse(vehicle: Vehicle) -> np.ndarray:
     Return the pseudo-inverse of B over the controlled DOFs and the thrusters in use.
 
     It is weighted by Q, as the quadratic programme is (Fossen, Handbook of Marine Craft
-    Hydrodynamics and Motion Control, section 12.3); MT-2012's Q is the identity.
+    Hydrodynamics and Motion Control, section 12.3); MT-2012's Q is the identity. What gives
+    nothing at rest, a fin, is out of use: its limits are held at 0.
 
     :return: (p, 6), 0 for DOFs of no weight and thrusters out of use [N/N, N/(N*m)].
     """
     controlled = np.flatnonzero(vehicle.wrench_weights)
-    ease = np.array([thruster.enabled / np.sqrt(thruster.weight)
+    ease = np.array([(thruster.enabled and any(thruster.bollard_thrust)) / np.sqrt(thruster.weight)
                      for thruster in vehicle.thrusters])
     inverse = np.zeros((len(vehicle.thrusters), 6))
     inverse[:, controlled] = ease[:, np.newaxis] * np.linalg.pinv(
@@ -76,17 +77,19 @@ class Drivers:
         Return the thrusts that each of DRIVERS delivers.
 
         One delivers what it is told within the limits at this velocity. The other takes newtons for
-        Bollard thrust and turns the propeller at the speed that gives them at rest.
+        Bollard thrust and turns the propeller at the speed that gives them at rest. Fins have no
+        such curve: with either, a servo is told the angle at which the lift is as asked.
 
         :param setpoints: (p,), within the Bollard limits, 0 where a thruster is out of use [N].
         :param velocity: (6,) through the water, frd axes [m/s, rad/s].
         :return: (2, p) [N].
         """
+        as_asked = np.clip(setpoints, *self._available(velocity))
         by_curve = [
-            thruster.model.thrust_in_flow(setpoint, *motion)
-            for setpoint, thruster, motion in zip(
-                setpoints.tolist(), self._thrusters, self._flow(velocity))]
-        return np.array([np.clip(setpoints, *self._available(velocity)), by_curve])
+            asked if thruster.model.DEFLECTS else thruster.model.thrust_in_flow(setpoint, *motion)
+            for setpoint, asked, thruster, motion in zip(
+                setpoints.tolist(), as_asked.tolist(), self._thrusters, self._flow(velocity))]
+        return np.array([as_asked, by_curve])
 
 
 def sweep(vehicle: Vehicle, velocities: Sequence[np.ndarray],

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 Limits = tuple[float, float]  # (lower <= 0, upper >= 0) [N]
+Axis = tuple[float, float, float]  # unit vector, frd axes [-]
 
 # Limits as a function of the thruster's speed through the water along its thrust axis and along
 # two axes across it [m/s]
@@ -26,8 +27,15 @@ class ThrusterModel(ABC):
 
     NAME: ClassVar[str]  # the word for it in a parameter file
     PLURAL: ClassVar[str]  # several of them, in a picture's legend
+    DEFLECTS: ClassVar[bool] = False  # whether it is a surface, told angles and rates of angles
 
     bollard_thrust: Limits  # at rest [N]
+    chord: Axis | None = None  # the first axis across; None: any two will do
+
+    @property
+    def reference_limits(self) -> Limits:
+        """Limits that tolerances and pictures can go by: at rest, if there are any there [N]."""
+        return self.bollard_thrust
 
     @classmethod
     @abstractmethod
@@ -62,11 +70,21 @@ class ThrusterModel(ABC):
         """
         Return what a driver calibrated at rest must be told to deliver `thrust` in the flow [N].
 
+        Of a surface, the deflection that its servo must be told [rad].
+
         The inverse of `thrust_in_flow` where the thrust is not 0; at the limit it is Bollard
         thrust.
 
         :param thrust: wanted in the flow, within the limits there [N].
         """
+
+    def thrust_per_radian(self, *flow: float) -> float:
+        """Return the thrust of a surface in the flow by its deflection [N/rad]."""
+        return 0.0
+
+    def deflection(self, thrust: float, *flow: float) -> float:
+        """Return the deflection at which a surface gives `thrust` in the flow [rad]."""
+        return 0.0
 
     def bollard_fraction(self, thrust: float, *flow: float) -> float:
         """Return the Bollard-equivalent of `thrust` as a share of full throttle, -1 to 1."""

@@ -61,8 +61,8 @@ def test_guesses_are_marked_where_they_stand(written):
     assert marked_guesses(written) == names[1:]
     written.write_text(text.replace('GUESS: ', ''))
     assert marked_guesses(written) == []
-    written.write_text('n:\n  ros__parameters:\n    # no GUESS\n    rate: 20.0 # Hz, a GUESS\n    a:\n'
-                       '      b: [1.0,\n          2.0]  # GUESS\n    c: {d: 1.0}  # GUESSED\n')
+    written.write_text('n:\n  ros__parameters:\n    # no GUESS\n    rate: 20.0 # Hz, a GUESS\n'
+                       '    a:\n      b: [1.0,\n          2.0]  # GUESS\n    c: 1.0  # GUESSED\n')
     assert marked_guesses(written) == ['rate', 'a.b']
 
 

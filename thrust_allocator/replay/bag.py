@@ -6,11 +6,9 @@ import shlex
 from typing import Any, NamedTuple
 
 from rosbags.rosbag2 import Reader
-from rosbags.typesys import get_typestore, Stores
 from thrust_allocator.replay.errors import ReplayError
+from thrust_allocator.replay.messages import read
 from thrust_allocator.replay.topics import find_topics, PARAMETER_EVENTS
-
-_TYPES = get_typestore(Stores.ROS2_JAZZY)
 
 
 class Message(NamedTuple):
@@ -18,7 +16,7 @@ class Message(NamedTuple):
 
     time: int  # of the recorder [ns]
     name: str  # that its topic has in the node's contract
-    content: Any  # with the fields of the ROS message
+    content: Any  # as `messages` reads it
 
 
 class Bag:
@@ -76,7 +74,7 @@ class Bag:
         """
         try:
             for connection, time, raw in self._reader.messages(self._connections):
-                content = _TYPES.deserialize_cdr(raw, connection.msgtype)
+                content = read(raw, connection.msgtype)
                 if connection.topic != PARAMETER_EVENTS or content.node in self._nodes:
                     yield Message(time, self._wanted[connection.topic], content)
         except (GeneratorExit, KeyboardInterrupt):

@@ -9,13 +9,13 @@ import numpy as np
 from thrust_allocator.inputs import Inputs
 from thrust_allocator.parameters.build import Description
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.replay import messages
 from thrust_allocator.replay.bag import Message
 from thrust_allocator.replay.schedule import Schedule
 from thrust_allocator.replay.ticks import Ticks
 from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.tick import Allocator
 
+ANOTHER_CLOCK = 3600 * 10**9  # [ns]; a stamp so far from the recorder's time is on another one
 LATENCY = 10**6  # [ns], which a tick takes from its inputs to its setpoints
 SAMPLE = 100 * 10**6  # [ns] between two looks at the power
 
@@ -95,16 +95,15 @@ class Run:
     def _accept(self, message: Message) -> None:
         content, now, inputs = message.content, message.time, self._inputs
         if message.name == 'cmd_wrench':
-            inputs.accept_wrench(messages.wrench(content), now, messages.age(content, now))
+            old = now - content.stamp if content.stamp else 0
+            inputs.accept_wrench(content.wrench, now, old if abs(old) < ANOTHER_CLOCK else 0)
             if self._schedule and inputs.wrench is not None and inputs.wrench.time == now:
                 self._schedule.wrench_accepted(now)
-        elif message.name == 'odom' == self._velocity:
-            inputs.accept_velocity(messages.twist(content), now, 'odom', content.header.frame_id,
-                                   messages.orientation(content))
-        elif message.name == 'twist' == self._velocity:
-            inputs.accept_velocity(messages.twist(content), now, 'twist')
+        elif message.name == self._velocity:
+            inputs.accept_velocity(content.twist, now, message.name, content.frame,
+                                   content.orientation)
         elif message.name == 'current' and self._velocity == 'odom':
-            inputs.accept_current(messages.vector(content.vector), content.header.frame_id, now)
+            inputs.accept_current(content.velocity, content.frame, now)
         if inputs.dropped != self._known_dropped:
             for cause in inputs.dropped - self._known_dropped:
                 self.events.append(Event(now, f'message dropped: {cause}'))
@@ -113,8 +112,7 @@ class Run:
     def _change(self, message: Message) -> None:
         """Change what was changed while it was recorded, but for what was set by hand."""
         known = self.description.parameters.values
-        changed = messages.parameter_changes(message.content)
-        changes = {name: value for name, value in changed.items()
+        changes = {name: value for name, value in message.content.values.items()
                    if name in known and name not in self._fixed}
         if not changes:
             return
@@ -141,7 +139,7 @@ class Run:
             begun = max([begun, *(one.time for one in self._waiting if one.name == 'cmd_wrench')])
         while self._waiting and self._waiting[0].time <= begun:
             self._use(self._waiting.popleft())
-        recorded = np.asarray(message.content.data, dtype=float)
+        recorded = message.content
         wrench = self._inputs.live_wrench(message.time, self._allocator.settings.timeouts)
         stopped = (len(recorded) > 0 and not recorded.any()
                    and wrench is not None and bool(wrench.any()))

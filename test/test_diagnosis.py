@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.vehicles import mt2012
-from thrust_allocator.diagnosis import allocation_figures, Findings, Level, shortfall, Tally
+from thrust_allocator.diagnosis import allocation_figures, note_tick, Tally, thrusters_off
+from thrust_allocator.findings import Findings, Level
 from thrust_allocator.inputs import age_in_seconds, Inputs
-from thrust_allocator.physics.frames import DOFS
-from thrust_allocator.solve.problem import Allocation, AllocationProblem
+from thrust_allocator.solve.problem import Allocation
 from thrust_allocator.tick import Allocator, Settings, Tick
 
 VEHICLE = mt2012()
 SECOND = 10**9  # [ns]
-UNITS = dict(zip(DOFS, ('N', 'N', 'N', 'N*m', 'N*m', 'N*m')))
 
 
 class Log:
@@ -42,34 +41,17 @@ def tick(wrench=(100.0, 0.0, 0.0, 0.0, 0.0, 0.0), enabled=True, **changes) -> Ti
     return replace(Allocator(VEHICLE, Settings()).tick(inputs, 0, enabled), **changes)
 
 
-def test_findings_are_logged_once_each_way():
-    """A finding is logged when it appears and when it is over, by its level; the worst leads."""
-    log = Log()
-    findings = Findings(log)
-    assert findings.overall() == (Level.OK, 'allocating')
-    for text in ('late', 'later', 'latest'):
-        findings.note('time', text)
-    findings.note('solver', 'broken', Level.ERROR)
-    assert findings.overall() == (Level.ERROR, 'broken; latest')
-    for _ in range(3):
-        findings.note('time', '')
-    assert findings.overall() == (Level.ERROR, 'broken')
-    findings.note('time', 'late again')
-    assert log.lines == [('warning', 'late'), ('error', 'broken'), ('info', 'no longer: latest'),
-                         ('warning', 'late again')]
-
-
 @pytest.mark.parametrize('changes, level, word', [
-    ({}, Level.OK, 'allocating'), ({'wrench': None}, Level.WARN, 'no wrench'),
+    ({}, Level.OK, 'allocating'),
     ({'enabled': False}, Level.WARN, 'disabled'),
     ({'allocation': allocation(status='unsolved')}, Level.ERROR, 'unsolved')])
 def test_what_a_tick_finds(changes, level, word):
     """A stop is a warning, a solver that does not vouch an error; both are over with the cause."""
     findings = Findings(Log())
-    findings.note_tick(tick(**changes))
-    assert findings.overall()[0] == level and word in findings.overall()[1]
-    findings.note_tick(tick())
-    assert findings.overall() == (Level.OK, 'allocating')
+    note_tick(findings, tick(**changes), 0)
+    assert findings.overall(0)[0] == level and word in findings.overall(0)[1]
+    note_tick(findings, tick(), 0)
+    assert findings.overall(3 * SECOND) == (Level.OK, 'allocating')
 
 
 @pytest.mark.parametrize('motion, word', [
@@ -80,27 +62,9 @@ def test_what_is_missing_of_the_motion(motion, word):
     """Lost odometry and an ignored current are warnings that say why."""
     findings = Findings(Log())
     plain = tick()
-    findings.note_tick(replace(plain, motion=plain.motion._replace(**motion)))
-    assert findings.overall()[0] == Level.WARN and word in findings.overall()[1]
-
-
-@pytest.mark.parametrize('dof', DOFS)
-def test_each_dof_is_named_in_its_unit(dof):
-    """What is missed is told of each DOF that is controlled, and what is not controlled as such."""
-    i = DOFS.index(dof)
-    controlled = replace(VEHICLE, wrench_weights=(1e4,) * 6)
-    text = shortfall(allocation(100.0 * np.eye(6)[i], at_bound=(0, 0, 0, 0, 1)), controlled)
-    assert f'{dof} 100.0 {UNITS[dof]}' in text and 'tunnel' in text
-    assert [name for name in DOFS if name in text] == [dof]
-    free = replace(VEHICLE, wrench_weights=tuple(1e4 * (name != dof) for name in DOFS))
-    text = shortfall(allocation(100.0 * np.eye(6)[i]), free)
-    assert f'{dof} is commanded but not controlled' in text
-    assert [name for name in DOFS if f'{name} is' in text] == [dof]
-
-
-def test_nothing_is_said_of_a_command_that_is_met():
-    """However large it is."""
-    assert shortfall(allocation(achieved=(1e5, 0, 300, 0, 50, 20)), VEHICLE) == ''
+    note_tick(findings, replace(plain, motion=plain.motion._replace(**motion)), 0)
+    level, message = findings.overall(0)
+    assert level == Level.WARN and word in message
 
 
 def test_figures_of_an_allocation():
@@ -117,17 +81,25 @@ def test_figures_of_an_allocation():
 
 
 def test_a_tally_counts_what_the_ticks_came_to():
-    """Means and worst of iterations and times, and the newest failure though it is over."""
+    """Means and worst of iterations and times, and what the newest allocation came to."""
     tally = Tally()
     for iterations, status in ((1, 'solved'), (4, 'unsolved'), (1, 'solved')):
         tally.count(tick(allocation=allocation(status=status, iterations=iterations)), 0.002)
     tally.count(tick(None), 0.004)
-    figures = tally.figures()
+    figures = tally.figures(VEHICLE)
     assert (figures['iterations, mean'], figures['iterations, worst']) == ('2.00', '4')
     assert (figures['tick time, mean [ms]'], figures['tick time, worst [ms]']) == ('2.500', '4.000')
     assert (figures['ticks'], figures['ticks late']) == ('4', '0')
-    assert 'unsolved' in tally.trouble and tally.newest.solved
-    assert set(Tally().figures()) == set(figures)
+    assert figures['solver status'] == 'solved'
+    assert set(Tally().figures(VEHICLE)) == set(figures)
+
+
+def test_thrusters_off_are_named():
+    """Those that are disabled, and nobody else."""
+    assert thrusters_off(VEHICLE) == ''
+    vehicle = replace(VEHICLE, thrusters=tuple(
+        replace(one, enabled=one.name not in ('left', 'up')) for one in VEHICLE.thrusters))
+    assert thrusters_off(vehicle) == 'left, up off: enabled is false'
 
 
 def test_ages():
@@ -138,11 +110,3 @@ def test_ages():
     assert age_in_seconds(inputs.velocity, 3 * SECOND + SECOND // 2) == '2.5'
     inputs.forget()
     assert age_in_seconds(inputs.velocity, 0) == 'none'
-
-
-def test_a_real_shortfall():
-    """Far out of reach all thrusters concerned are named, and what surge lacks."""
-    found = AllocationProblem(VEHICLE).solve(
-        np.array([3000.0, 0.0, 0.0, 0.0, 0.0, 0.0]), VEHICLE.bollard_thrust)
-    text = shortfall(found, VEHICLE)
-    assert text.startswith('down, left, up, right at the limit; surge 2556.2 N')

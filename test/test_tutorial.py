@@ -66,7 +66,7 @@ def test_the_described_vehicle(start, my_vehicle):
     assert_allclose(np.array([4.069, 5.245]) * 9.807, [39.9, 51.4], atol=0.05)
     assert node.vehicle.warnings() == []
     assert not peer.settle([40.0, 0.0, 0.0, 0.0, 0.0, 0.0])['thruster_setpoints'].any()
-    assert 'disabled: zero setpoints' in node._findings.overall()[1]
+    assert node._reporter.present('enable') == 'disabled: zero setpoints'
 
 
 def test_the_package_has_the_same_vehicle(my_vehicle):
@@ -94,7 +94,8 @@ def test_the_weights_shown(start, my_vehicle):
     assert_allclose(before['achieved_wrench'][[0, 5]], [120.6, 0.0], atol=0.06)
     assert_allclose(before['thrust_limits'][[0, 10]], [-37.27, 48.01], atol=0.005)
     node._report()
-    assert node._findings.overall()[1] == shown('## 8. Read the diagnostics')
+    said = re.sub('in [0-9]+% of', 'in 100% of', node._reporter.present('shortfall'))
+    assert said == shown('## 8. Read the diagnostics')
     assert node.set_parameters([Parameter('wrench_weights.yaw', value='1.0e6')])[0].successful
     after = peer.settle(command, forward)
     assert_allclose(after['thruster_setpoints'],
@@ -127,7 +128,10 @@ def test_the_log_shown(start, my_vehicle):
     """At start the node says what the tutorial shows, in that order, without an odometry."""
     node, peer = start(file=my_vehicle)
     said = []
-    node._findings._logger = type('Logger', (), {'warning': said.append, 'info': said.append})
-    peer.settle()
+    logger = type('Logger', (), {'warning': said.append, 'info': said.append})
+    node._reporter._findings._logger = logger
+    for publisher in peer._inputs.values():
+        peer.destroy_publisher(publisher)
+    peer.wait_until(lambda: len(said) == 3, 'what the node says')
     assert [f'[WARN] [thrust_allocator]: {line}' for line in said] == shown(
         'Start it:').splitlines()

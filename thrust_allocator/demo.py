@@ -16,8 +16,8 @@ from std_msgs.msg import Float64MultiArray
 from thrust_allocator.parameters.file import default_parameter_file, NODE_NAME
 from thrust_allocator.physics.frames import DOFS, frd_signs
 from thrust_allocator.ros.messages import wrench_components
-from thrust_allocator.ros.node import INPUT, ThrustAllocator
-from thrust_allocator.ros.outputs import OUTPUT
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.ros.qos import INPUT, OUTPUT
 
 NAMESPACE = f'/{NODE_NAME}_demo'
 SPEEDS = (0.3, 0.5, 0.7, 0.9, 1.2, 1.5, 1.8)  # [m/s]

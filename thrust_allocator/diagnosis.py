@@ -1,66 +1,24 @@
-"""What a pilot should know: findings in words, and the figures of the last second."""
+"""What a pilot should know of the ticks of the last second: findings, and figures."""
 
 from dataclasses import dataclass, field
-from enum import IntEnum
-from typing import Any
 
 import numpy as np
-from thrust_allocator.physics.frames import DOFS
+from thrust_allocator.findings import Findings, Level
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.solve.problem import Allocation
 from thrust_allocator.tick import Tick
 
-SLACK = 0.5  # [N, N*m], with SLACK_SHARE of the command: what may be unallocated without a word
-SLACK_SHARE = 0.01
-UNITS = ('N', 'N', 'N', 'N*m', 'N*m', 'N*m')
 
-
-class Level(IntEnum):
-    """The levels of a diagnostic status."""
-
-    OK = 0
-    WARN = 1
-    ERROR = 2
-
-
-class Findings:
-    """What is wrong at present, by kind; each is logged when it appears and when it is over."""
-
-    def __init__(self, logger: Any) -> None:
-        """Log to `logger`, which has the methods info, warning and error."""
-        self._logger = logger
-        self._present: dict[str, tuple[Level, str]] = {}
-
-    def note(self, kind: str, text: str, level: Level = Level.WARN) -> None:
-        """Note what is wrong, or with an empty text that nothing is."""
-        if text:
-            if kind not in self._present:
-                if level == Level.ERROR:
-                    self._logger.error(text)
-                else:
-                    self._logger.warning(text)
-            self._present[kind] = level, text
-        elif kind in self._present:
-            self._logger.info(f'no longer: {self._present.pop(kind)[1]}')
-
-    def note_tick(self, tick: Tick) -> None:
-        """Note what a tick has found missing, and a solver that does not vouch for its result."""
-        motion = tick.motion
-        self.note('current', motion.current_ignored
-                  and f'current ignored: {motion.current_ignored}')
-        self.note('odometry', motion.missing and (
-            f'no odometry {motion.missing}: using fallback_velocity'
-            + ('' if motion.twist is None else ' where it is tighter')))
-        self.note('wrench', 'no wrench: zero setpoints' if tick.wrench is None else '')
-        self.note('enable', '' if tick.enabled else 'disabled: zero setpoints')
-        self.note('solver', trouble(tick.allocation), Level.ERROR)
-
-    def overall(self) -> tuple[Level, str]:
-        """Return the worst level, and all findings in one line, the worst first."""
-        if not self._present:
-            return Level.OK, 'allocating'
-        worst_first = sorted(self._present.values(), key=lambda finding: -finding[0])
-        return worst_first[0][0], '; '.join(text for _, text in worst_first)
+def note_tick(findings: Findings, tick: Tick, now: int) -> None:
+    """Note what a tick has found missing, and a solver that does not vouch for its result."""
+    motion, note = tick.motion, findings.note
+    note('current', motion.current_ignored and f'current ignored: {motion.current_ignored}', now)
+    note('odometry', motion.missing and (
+        f'no odometry {motion.missing}: using fallback_velocity'
+        + ('' if motion.twist is None else ' where it is tighter')), now)
+    note('enable', '' if tick.enabled else 'disabled: zero setpoints', now)
+    note('solver', trouble(tick.allocation), now, Level.ERROR)
 
 
 def trouble(allocation: Allocation | None) -> str:
@@ -71,27 +29,10 @@ def trouble(allocation: Allocation | None) -> str:
             'best')
 
 
-def shortfall(allocation: Allocation, vehicle: Vehicle) -> str:
-    """
-    Say which thrusters are at a limit while the wrench is not met, and which DOFs are off.
-
-    A command in a DOF of weight 0 is a finding of its own.
-
-    :return: one line, or '' if there is nothing to say.
-    """
-    unallocated, wrench_weights = allocation.unallocated, vehicle.wrench_weights
-    command = allocation.achieved + unallocated
-    off = np.abs(unallocated) > SLACK + SLACK_SHARE * np.abs(command)
-    parts = []
-    at_bound = _at_bound(allocation, vehicle)
-    missed = [f'{DOFS[i]} {abs(unallocated[i]):.1f} {UNITS[i]}'
-              for i in np.flatnonzero(off) if wrench_weights[i]]
-    if at_bound and missed:
-        parts += [f'{", ".join(at_bound)} at {"its limit" if len(at_bound) == 1 else "the limit"}',
-                  f'{", ".join(missed)} off {"its" if len(missed) == 1 else "their"} command']
-    parts += [f'{DOFS[i]} is commanded but not controlled (wrench_weights.{DOFS[i]} is 0)'
-              for i in range(6) if not wrench_weights[i] and abs(command[i]) > SLACK]
-    return '; '.join(parts)
+def thrusters_off(vehicle: Vehicle) -> str:
+    """Name the thrusters that are not in use."""
+    off = [one.name for one in vehicle.thrusters if not one.enabled]
+    return f'{", ".join(off)} off: enabled is false' if off else ''
 
 
 @dataclass
@@ -99,35 +40,42 @@ class Tally:
     """What is counted of the ticks from one report to the next."""
 
     times: list[float] = field(default_factory=list)  # each tick's duration [s]
-    iterations: list[int] = field(default_factory=list)  # OSQP's, of each solve
+    allocated: list[Allocated] = field(default_factory=list)  # those that had a wrench
     late: int = 0  # ticks
-    newest: Allocation | None = None
-    trouble: str = ''  # the newest failure of the solver, though it may be over
 
     def count(self, tick: Tick, seconds: float) -> None:
         """Count a tick that took so long [s]."""
         self.times.append(seconds)
         if tick.allocation is not None:
-            self.newest = tick.allocation
-            self.iterations.append(tick.allocation.iterations)
-            self.trouble = trouble(tick.allocation) or self.trouble
+            self.allocated.append(
+                Allocated(tick.wrench, tick.unallocated, tick.allocation, tick.speed_limits))
 
-    def figures(self) -> dict[str, str]:
-        """Return mean and worst of what was counted, as text by key."""
+    def shortfall(self, vehicle: Vehicle, yardstick: Yardstick) -> str:
+        """Say what was missing of the commands, or ''."""
+        return shortfall(self.allocated, len(self.times), vehicle, yardstick.floor)
+
+    def figures(self, vehicle: Vehicle) -> dict[str, str]:
+        """Return what was counted, and what the newest allocation came to, as text by key."""
+        iterations = [one.allocation.iterations for one in self.allocated] or [0]
+        times = self.times or [0.0]
         return {
-            'iterations, mean': f'{np.mean(self.iterations or [0]):.2f}',
-            'iterations, worst': str(max(self.iterations, default=0)),
-            'tick time, mean [ms]': f'{1e3 * np.mean(self.times or [0.0]):.3f}',
-            'tick time, worst [ms]': f'{1e3 * max(self.times, default=0.0):.3f}',
+            **allocation_figures(
+                self.allocated[-1].allocation if self.allocated else None, vehicle),
+            'iterations, mean': f'{np.mean(iterations):.2f}',
+            'iterations, worst': str(max(iterations)),
+            'tick time, mean [ms]': f'{1e3 * np.mean(times):.3f}',
+            'tick time, worst [ms]': f'{1e3 * max(times):.3f}',
             'ticks': str(len(self.times)),
             'ticks late': str(self.late),
         }
 
 
 def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[str, str]:
-    """Return what the newest allocation of a period came to, as text by key."""
+    """Return what the newest allocation of a second came to, as text by key."""
     unallocated = np.zeros(6) if allocation is None else allocation.unallocated
-    at_bound = [] if allocation is None else _at_bound(allocation, vehicle)
+    at_bound = [] if allocation is None else [
+        one.name for one, side in zip(vehicle.thrusters, allocation.at_bound)
+        if side and one.enabled]
     return {
         'solver status': 'not called' if allocation is None else allocation.status,
         'thrusters at a bound': ', '.join(at_bound),
@@ -135,9 +83,3 @@ def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[
         'unallocated force [N]': f'{np.linalg.norm(unallocated[:3]):.2f}',
         'unallocated moment [N*m]': f'{np.linalg.norm(unallocated[3:]):.2f}',
     }
-
-
-def _at_bound(allocation: Allocation, vehicle: Vehicle) -> list[str]:
-    """Return the names of the thrusters that are held at a bound, and not because they are off."""
-    return [one.name for one, side in zip(vehicle.thrusters, allocation.at_bound)
-            if side and one.enabled]

@@ -38,6 +38,7 @@ class Received:
     values: np.ndarray  # as they stood in the message, a velocity as the filter leaves it
     time: int  # of receipt [ns]
     frame: str = ''  # the frame id that the message gave
+    child_frame: str = ''  # and that of the axes of the twist, of an odometry
     orientation: np.ndarray | None = None  # quaternion x, y, z, w
     old: int = 0  # its age at receipt, by its stamp [ns]
 
@@ -82,7 +83,7 @@ class Inputs:
             self.wrench = Received(wrench, now, old=old)
 
     def accept_velocity(self, twist: np.ndarray, now: int, topic: str, frame: str = '',
-                        orientation: np.ndarray | None = None) -> None:
+                        orientation: np.ndarray | None = None, child_frame: str = '') -> None:
         """
         Remember a velocity.
 
@@ -90,9 +91,11 @@ class Inputs:
         :param topic: it came on, for the count of what is dropped.
         :param frame: name of the parent frame, of an odometry.
         :param orientation: quaternion x, y, z, w that turns body axes into the parent frame's.
+        :param child_frame: name that the odometry gives the body axes.
         """
         if self._is_sound(topic, twist, LARGEST_VELOCITY):
-            self.velocity = Received(self._smoothed(twist, now), now, frame, orientation)
+            self.velocity = Received(
+                self._smoothed(twist, now), now, frame, child_frame, orientation)
 
     def _smoothed(self, twist: np.ndarray, now: int) -> np.ndarray:
         time_constant, longest_gap = self.smoothing

@@ -21,8 +21,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64MultiArray
 from thrust_allocator.parameters.file import NODE_NAME
-from thrust_allocator.ros.node import INPUT
-from thrust_allocator.ros.outputs import OUTPUT
+from thrust_allocator.ros.qos import INPUT, OUTPUT
 
 MINUTE = 60.0  # [s]
 PATIENCE = 20.0  # longest wait for the first messages, and for the end of the process [s]

@@ -41,6 +41,7 @@ class Tick:
     """All that one tick decided; wrenches in the axes of the messages, p thrusters."""
 
     limits: np.ndarray  # (2, p), row 0 lower, row 1 upper [N]
+    speed_limits: np.ndarray  # those of the velocity alone, (2, p) [N]
     thrusts: np.ndarray  # (p,) in the flow, inside the limits; zeros if the vehicle is stopped [N]
     achieved: np.ndarray  # B tau, (6,) [N, N*m]
     unallocated: np.ndarray  # commanded minus achieved, (6,) [N, N*m]
@@ -113,13 +114,13 @@ class Allocator:
         past.time = now
         if wrench is None or not enabled:
             past.stand = np.zeros_like(past.stand)
-            return Tick(limits, past.stand, np.zeros(6),
+            return Tick(limits, limits, past.stand, np.zeros(6),
                         np.zeros(6) if wrench is None else wrench, flow, enabled,
                         wrench, motion)
-        limits = self._rates(limits, past.stand, flow, elapsed)
-        allocation = self._problem.solve(self.signs * wrench, limits)
+        within_rate = self._rates(limits, past.stand, flow, elapsed)
+        allocation = self._problem.solve(self.signs * wrench, within_rate)
         past.stand = self._rates.stand(allocation.thrusts, flow)
-        return Tick(limits, allocation.thrusts, self.signs * allocation.achieved,
+        return Tick(within_rate, limits, allocation.thrusts, self.signs * allocation.achieved,
                     self.signs * allocation.unallocated, flow, enabled, wrench, motion,
                     allocation)
 

@@ -16,6 +16,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from std_srvs.srv import SetBool
 from support.optimum import daqp_optimum
 from support.peer import Peer, TYPES_OUT
+from thrust_allocator.findings import AFTERWARDS
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.node import ThrustAllocator
@@ -164,6 +165,13 @@ class SteppedPeer(Peer):
         status = self.statuses[-1]
         return (LEVELS[status.level], status.message,
                 {pair.key: pair.value for pair in status.values})
+
+    def report_later(self) -> tuple[str, str, dict[str, str]]:
+        """Have the node report once what was wrong before is over: 2 s later, inputs going on."""
+        self.steps(AFTERWARDS // PERIOD + 1)
+        self.report()  # by which what the ticks until now were short of is gone
+        self.steps(AFTERWARDS // PERIOD + 1)
+        return self.report()
 
     def limits_at(self, *velocity: float) -> np.ndarray:
         """Return the limits (10,) at a velocity through the water, in frd axes."""

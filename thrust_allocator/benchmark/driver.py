@@ -14,8 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
 from thrust_allocator.benchmark.ticks import mt2012, smooth_walk
 from thrust_allocator.physics.frames import frd_signs
-from thrust_allocator.ros.node import INPUT
-from thrust_allocator.ros.outputs import OUTPUT
+from thrust_allocator.ros.qos import INPUT, OUTPUT
 
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into a period
 PATIENCE = 20.0  # longest wait for the first answer [s]

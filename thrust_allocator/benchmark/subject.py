@@ -19,8 +19,8 @@ from std_srvs.srv import SetBool
 from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
-from thrust_allocator.ros.node import INPUT, ThrustAllocator
-from thrust_allocator.ros.outputs import OUTPUT
+from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.ros.qos import INPUT, OUTPUT
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012

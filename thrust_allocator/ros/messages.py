@@ -48,9 +48,9 @@ def array_message(dimensions: list[tuple[str, int]]) -> Float64MultiArray:
     return message
 
 
-def status_message(name: str, level: int, text: str,
+def status_message(name: str, hardware: str, level: int, text: str,
                    figures: Mapping[str, str]) -> DiagnosticStatus:
     """Return a diagnostic status."""
     return DiagnosticStatus(
-        name=name, level=bytes([level]), message=text,
+        name=name, hardware_id=hardware, level=bytes([level]), message=text,
         values=[KeyValue(key=key, value=value) for key, value in figures.items()])

@@ -1,8 +1,9 @@
 """The ROS 2 node: takes messages in, asks for a tick, and sends it out."""
 
+from collections.abc import Callable
 import time
+from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import (
     Twist, TwistStamped, TwistWithCovarianceStamped, Vector3Stamped, Wrench, WrenchStamped)
 from nav_msgs.msg import Odometry
@@ -11,24 +12,20 @@ from rclpy.clock import Clock, ClockType, JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, ReliabilityPolicy
-from std_msgs.msg import Header
 from std_srvs.srv import SetBool
-from thrust_allocator.diagnosis import allocation_figures, Findings, Level, shortfall, Tally
-from thrust_allocator.inputs import age_in_seconds, Inputs
+from thrust_allocator.inputs import Inputs
 from thrust_allocator.parameters.file import NODE_NAME
-from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.parameters.types import ParameterError, shown
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.markers import thruster_markers
 from thrust_allocator.ros.messages import (
-    quaternion_components, status_message, twist_components, vector_components, wrench_components)
+    quaternion_components, twist_components, vector_components, wrench_components)
 from thrust_allocator.ros.outputs import Outputs
 from thrust_allocator.ros.parameters import changes_of, coerced, declare, take_overrides
+from thrust_allocator.ros.qos import INPUT, OVERRIDABLE, unused_overrides
+from thrust_allocator.ros.reporter import Reporter
 from thrust_allocator.tick import Allocator, Tick
 from visualization_msgs.msg import MarkerArray
-
-# Best effort and depth 1 meet any publisher, and only the newest message counts
-INPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
 REPORT_PERIOD = 1.0  # [s] between diagnostics
@@ -65,15 +62,16 @@ class ThrustAllocator(Node):
         self._enabled = values['start_enabled']
         self._last_tick: Tick | None = None
         self._last_time: int | None = None  # when the timer called last, on the tick's clock [ns]
-        self._findings = Findings(self.get_logger())
-        self._tally = Tally()
-        self._last_report: int | None = None  # [ns]
-        self._known_dropped = self._inputs.dropped.copy()
+        self._reporter = Reporter(self, self._inputs, self.vehicle, {
+            'cmd_wrench': f'stamped_wrench is {str(values["stamped_wrench"]).lower()}',
+            'twist': f'velocity_type is {values["velocity_type"]}'})
         self.interrupted = False  # whether OSQP has caught a SIGINT
 
-        self._diagnostics_publisher = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self._marker_publisher = self.create_publisher(MarkerArray, 'thruster_markers', 1)
+        self._marker_publisher = self.create_publisher(
+            MarkerArray, 'thruster_markers', 1, qos_overriding_options=OVERRIDABLE)
         self._subscribe(values['stamped_wrench'], values['velocity_type'])
+        for name in unused_overrides(self):
+            self.get_logger().warning(f'{name}: is for no topic of this node; it is ignored')
         self.create_service(SetBool, '~/enable', self._on_enable)
         self._checked = self._description  # what the newest check of a change has built
         self.add_pre_set_parameters_callback(
@@ -96,21 +94,22 @@ class ThrustAllocator(Node):
         return self._allocator.vehicle
 
     def _subscribe(self, stamped_wrench: bool, velocity_type: str) -> None:
+        def subscribe(kind: type, topic: str, callback: Callable[[Any], None]) -> None:
+            self.create_subscription(
+                kind, topic, callback, INPUT, qos_overriding_options=OVERRIDABLE)
+
         if stamped_wrench:
-            self.create_subscription(
-                WrenchStamped, 'cmd_wrench', self._on_stamped_wrench, INPUT)
+            subscribe(WrenchStamped, 'cmd_wrench', self._on_stamped_wrench)
         else:
-            self.create_subscription(Wrench, 'cmd_wrench', self._on_wrench, INPUT)
+            subscribe(Wrench, 'cmd_wrench', self._on_wrench)
         if velocity_type == 'odometry':
-            self.create_subscription(Odometry, 'odom', self._on_odometry, INPUT)
-            self.create_subscription(Vector3Stamped, 'current', self._on_current, INPUT)
+            subscribe(Odometry, 'odom', self._on_odometry)
+            subscribe(Vector3Stamped, 'current', self._on_current)
         elif velocity_type == 'twist':
-            self.create_subscription(
-                TwistStamped, 'twist', lambda message: self._on_twist(message.twist), INPUT)
+            subscribe(TwistStamped, 'twist', lambda message: self._on_twist(message.twist))
         else:
-            self.create_subscription(
-                TwistWithCovarianceStamped, 'twist',
-                lambda message: self._on_twist(message.twist.twist), INPUT)
+            subscribe(TwistWithCovarianceStamped, 'twist',
+                      lambda message: self._on_twist(message.twist.twist))
 
     # Parameters
 
@@ -126,10 +125,14 @@ class ThrustAllocator(Node):
         return SetParametersResult(successful=True)
 
     def _apply(self, changes: list[Parameter]) -> None:
-        """Put what the check has built in force from the next tick on."""
+        """Put what the check has built in force from the next tick on, and log it."""
+        before = self._description.parameters.values
         self._description = self._checked
         self._allocator = Allocator.of(self._description, before=self._allocator)
         values = self._description.parameters.values
+        for name, value in values.items():
+            if value != before[name]:
+                self.get_logger().info(f'{name}: {shown(before[name])} -> {shown(value)}')
         self._outputs.publish_individually(values['publish_individual'])
         period = round(1e9 / values['rate'])  # [ns]
         if self._timer.timer_period_ns != period:
@@ -151,7 +154,7 @@ class ThrustAllocator(Node):
     def _on_odometry(self, message: Odometry) -> None:
         self._inputs.accept_velocity(
             twist_components(message.twist.twist), self._now(), 'odom', message.header.frame_id,
-            quaternion_components(message.pose.pose.orientation))
+            quaternion_components(message.pose.pose.orientation), message.child_frame_id)
 
     def _on_twist(self, message: Twist) -> None:
         self._inputs.accept_velocity(twist_components(message), self._now(), 'twist')
@@ -178,19 +181,18 @@ class ThrustAllocator(Node):
                 and now - self._last_time > LATE * self._timer.timer_period_ns)
         self._last_time = now
         if late:
-            self._tally.late += 1
+            self._reporter.late()
             self._after_messages.trigger()  # so that what has come meanwhile is taken first
         else:
             self._tick()
 
     def _tick(self) -> None:
-        start = time.perf_counter()
-        tick = self._allocator.tick(self._inputs, self._now(), self._enabled)
+        start, now = time.perf_counter(), self._now()
+        tick = self._allocator.tick(self._inputs, now, self._enabled)
         self._send(tick)
-        self._findings.note_tick(tick)
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
             self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
-        self._tally.count(tick, time.perf_counter() - start)
+        self._reporter.tick(tick, now, time.perf_counter() - start)
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
@@ -210,34 +212,7 @@ class ThrustAllocator(Node):
     # Reports
 
     def _report(self) -> None:
-        """Look for what no tick can see, and publish the diagnostics since the last report."""
-        tally, self._tally = self._tally, Tally()
-        now, inputs = self._now(), self._inputs
-        vehicle, allocation = self.vehicle, tally.newest
-        for topic in ('cmd_wrench', 'thruster_setpoints'):
-            count = self.count_publishers(self.resolve_topic_name(topic))
-            self._findings.note(
-                f'publishers of {topic}', f'{count} publishers on {topic}' if count > 1 else '')
-        stands = self._simulated and now == self._last_report
-        self._findings.note('clock', 'the clock stands: no ticks' if stands else '')
-        self._last_report = now
-        fresh = inputs.dropped - self._known_dropped
-        self._known_dropped = inputs.dropped.copy()
-        self._findings.note(
-            'dropped', f'messages dropped: {", ".join(sorted(fresh))}' if fresh else '')
-        self._findings.note('shortfall', shortfall(allocation, vehicle) if allocation else '')
-
-        level, text = self._findings.overall()
-        if tally.trouble and level < Level.ERROR:
-            level, text = Level.ERROR, f'{tally.trouble}; {text}'
-        self._diagnostics_publisher.publish(DiagnosticArray(
-            header=Header(stamp=self.get_clock().now().to_msg()),
-            status=[status_message(f'{self.get_name()}: allocation', level, text, {
-                'age of wrench [s]': age_in_seconds(inputs.wrench, now),
-                'age of odometry [s]': age_in_seconds(inputs.velocity, now),
-                **allocation_figures(allocation, vehicle), **tally.figures(),
-                **{f'dropped: {cause}': str(n) for cause, n in sorted(inputs.dropped.items())},
-            })]))
+        self._reporter.report(self.vehicle, self._now(), self._simulated)
 
     def _draw(self) -> None:
         """Publish a picture of the last tick, if anybody looks."""

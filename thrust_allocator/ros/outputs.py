@@ -8,15 +8,14 @@ from geometry_msgs.msg import Wrench
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
 from thrust_allocator.physics.vehicle import Thruster
 from thrust_allocator.ros.messages import array_message, fill_wrench
+from thrust_allocator.ros.qos import OUTPUT, OVERRIDABLE
 from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.tick import Tick
 
-OUTPUT = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 ACKNOWLEDGE = 0.2  # the longest wait for the last setpoints to be acknowledged [s]
 
 
@@ -37,20 +36,23 @@ class Outputs:
         self._setpoints = array_message([('thrusters', p)])
         self._achieved, self._unallocated = Wrench(), Wrench()
         self._states = JointState(name=list(names))
-        create = node.create_publisher
-        self._limits_publisher = create(Float64MultiArray, 'thrust_limits', OUTPUT)
-        self._setpoints_publisher = create(Float64MultiArray, 'thruster_setpoints', OUTPUT)
-        self._achieved_publisher = create(Wrench, 'achieved_wrench', OUTPUT)
-        self._unallocated_publisher = create(Wrench, 'unallocated_wrench', OUTPUT)
-        self._states_publisher = create(JointState, 'thruster_states', OUTPUT)
+        self._limits_publisher = self._create(Float64MultiArray, 'thrust_limits')
+        self._setpoints_publisher = self._create(Float64MultiArray, 'thruster_setpoints')
+        self._achieved_publisher = self._create(Wrench, 'achieved_wrench')
+        self._unallocated_publisher = self._create(Wrench, 'unallocated_wrench')
+        self._states_publisher = self._create(JointState, 'thruster_states')
         self._individual: list[Publisher] = []
         self._individually = False
+
+    def _create(self, kind: type, topic: str) -> Publisher:
+        return self._node.create_publisher(
+            kind, topic, OUTPUT, qos_overriding_options=OVERRIDABLE)
 
     def publish_individually(self, on: bool) -> None:
         """Have each thrust on a topic `thrusters/<name>/thrust` too, or end with zeros there."""
         if on and not self._individual:
             self._individual = [
-                self._node.create_publisher(Float64, f'thrusters/{name}/thrust', OUTPUT)
+                self._create(Float64, f'thrusters/{name}/thrust')
                 for name in self._states.name]
         elif self._individually and not on:
             for publisher in self._individual:

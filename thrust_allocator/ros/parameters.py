@@ -12,6 +12,7 @@ from thrust_allocator.parameters.check import Parameters
 from thrust_allocator.parameters.definition import Definition
 from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.parameters.types import as_real, Flag, ParameterError, Real, Reals
+from thrust_allocator.ros.qos import check_overrides
 
 
 def take_overrides(node: Node) -> Description:
@@ -24,6 +25,7 @@ def take_overrides(node: Node) -> Description:
     """
     given = {name: one.value for name, one in node.get_parameters_by_prefix('').items()}
     Flag().read('use_sim_time', given['use_sim_time'])
+    check_overrides(given)
     own = {name: plain(value) for name, value in given.items() if not is_of_every_node(name)}
     for name in own:
         node.undeclare_parameter(name)

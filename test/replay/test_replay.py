@@ -115,6 +115,23 @@ def test_the_recomputed_bag(undrawn, replay, mt2012, tmp_path):
             ticks['unallocated pitch [N*m]'][i], abs=1e-6)
 
 
+def test_fins(undrawn, replay, mt2012, tmp_path):
+    """A fin's deflection is the position in thruster_states, in proportion to its lift."""
+    bag = write(tmp_path / 'bag', mission(1.0, speed=lambda t: 0.9))
+    replay(bag, mt2012.with_name('delphin2_fins.yaml'))
+    ticks = table(tmp_path / 'out')
+    with Reader(tmp_path / 'out' / 'replay.mcap') as reader:
+        states = [STORE.deserialize_cdr(raw, one.msgtype) for one, _, raw in reader.messages(
+            [one for one in reader.connections if one.topic.endswith('states')])]
+    last = states[-1]
+    fins = np.array([name.startswith('fin_') for name in last.name])
+    thrusts = [ticks[f'{name} thrust [N]'][-1] for name in last.name]
+    assert last.effort == pytest.approx(thrusts, abs=1e-6) and len(last.velocity) == 0
+    assert fins.sum() == 4 and not last.position[~fins].any()
+    slopes = last.position[fins] / np.array(thrusts)[fins]
+    assert np.any(last.position) and np.ptp(slopes[np.isfinite(slopes)]) < 1e-6
+
+
 def test_vehicles_side_by_side(undrawn, replay, mt2012, variant, tmp_path):
     """Several files, and each with what --set changes, in one table, with pictures of their own."""
     bag = write(tmp_path / 'bag', mission(1.0, speed=lambda t: 0.9))

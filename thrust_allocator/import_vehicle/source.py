@@ -84,5 +84,6 @@ def _read_parameter_file(path: Path) -> Configuration:
         raise SourceError(str(error).removeprefix(f'{path}: ')) from None
     return Configuration(
         str(path), PARAMETER_FILE, 'frd',
-        tuple(Mount(one.name, one.position, one.direction, one.torque_ratio, one.bollard_thrust)
+        tuple(Mount(one.name, one.position, one.direction, one.torque_ratio,
+                    (None, None) if one.model.DEFLECTS else one.bollard_thrust)
               for one in vehicle.thrusters), 'the body origin')

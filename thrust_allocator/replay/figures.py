@@ -78,8 +78,11 @@ def energy_proxy(run: Run) -> float:
 def differences(run: Run) -> np.ndarray:
     """Return, (n,), how far recorded and recomputed setpoints are apart, a share of Bollard."""
     ticks, vehicle = run.ticks, run.description.vehicle
+    unit = run.description.parameters.values['setpoint_unit']
     scale = np.abs(vehicle.reference_limits).max(axis=0)
-    if run.description.parameters.values['setpoint_unit'] == 'bollard_fraction':
+    if unit != 'newton':  # then those of fins are deflections
+        scale[[one.model.DEFLECTS for one in vehicle.thrusters]] = 1.0
+    if unit == 'bollard_fraction':
         scale = np.ones_like(scale)
     return (np.abs(ticks['recorded'] - ticks['setpoints']) / scale).max(axis=1)
 
@@ -95,7 +98,7 @@ def difference(run: Run) -> dict[str, float] | None:
 
 
 def _reach(run: Run) -> np.ndarray:
-    """Return what all thrusters together could give of each DOF at rest, (6,) [N, N*m]."""
+    """Return what all thrusters give together at rest, fins at 1 m/s, (6,) [N, N*m]."""
     vehicle = run.description.vehicle
     return np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.reference_limits).max(axis=0)
 

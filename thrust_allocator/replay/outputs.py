@@ -90,10 +90,8 @@ def _topics(run: Run, several: bool) -> Iterator[tuple[str, str, Iterator[tuple[
     states = types['sensor_msgs/msg/JointState'](
         header=types['std_msgs/msg/Header'](
             stamp=types['builtin_interfaces/msg/Time'](sec=0, nanosec=0), frame_id=''),
-        name=names, position=empty, velocity=empty, effort=np.zeros(len(names)))
-    yield (f'{root}/thruster_states', 'sensor_msgs/msg/JointState',
-           _payloads(ticks.times, ticks['thrusts'], states, 'sensor_msgs/msg/JointState',
-                     stamped=True))
+        name=names, position=np.zeros(len(names)), velocity=empty, effort=np.zeros(len(names)))
+    yield f'{root}/thruster_states', states.__msgtype__, _states(run, states)
 
 
 def _array(types: Any, p: int) -> Any:
@@ -105,14 +103,23 @@ def _array(types: Any, p: int) -> Any:
     return types['std_msgs/msg/Float64MultiArray'](layout=layout, data=np.zeros(2 * p))
 
 
-def _payloads(times: np.ndarray, rows: np.ndarray, message: Any, kind: str,
-              stamped: bool = False) -> Iterator[tuple[int, bytes]]:
-    template = bytes(_TYPES.serialize_cdr(message, kind))
-    head = template[:len(template) - 8 * rows.shape[1]]
-    rows = np.ascontiguousarray(rows, dtype='<f8')
-    for time, row in zip(times.tolist(), rows):
-        if stamped:
-            seconds, rest = divmod(time, 10**9)
-            head = (head[:4] + seconds.to_bytes(4, 'little') + rest.to_bytes(4, 'little')
-                    + head[12:])
+def _payloads(times: np.ndarray, rows: np.ndarray, message: Any, kind: str
+              ) -> Iterator[tuple[int, bytes]]:
+    """Yield messages that differ in the numbers at their end."""
+    head = bytes(_TYPES.serialize_cdr(message, kind))[:-8 * rows.shape[1]]
+    for time, row in zip(times.tolist(), np.ascontiguousarray(rows, dtype='<f8')):
         yield time, head + row.tobytes()
+
+
+def _states(run: Run, message: Any) -> Iterator[tuple[int, bytes]]:
+    """Yield JointStates, which end in positions, the lengths of the other two, and efforts."""
+    template = bytes(_TYPES.serialize_cdr(message, message.__msgtype__))
+    size = 8 * len(message.name)
+    head, lengths = template[12:-2 * size - 8], template[-size - 8:-size]
+    rows = zip(run.ticks.times.tolist(), run.ticks['deflections'].astype('<f8'),
+               run.ticks['thrusts'].astype('<f8'))
+    for time, positions, efforts in rows:
+        seconds, nanoseconds = divmod(time, 10**9)
+        stamp = seconds.to_bytes(4, 'little') + nanoseconds.to_bytes(4, 'little')
+        yield time, b''.join((template[:4], stamp, head, positions.tobytes(), lengths,
+                              efforts.tobytes()))

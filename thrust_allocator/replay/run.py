@@ -150,6 +150,8 @@ class Run:
         thrusters, thrusts = self.description.vehicle.thrusters, tick.thrusts.tolist()
         unit = self.description.parameters.values['setpoint_unit']
         setpoints = SETPOINTS[unit](thrusts, thrusters, tick.flow)
+        deflections = [one.model.deflection(thrust, *motion) if one.model.DEFLECTS else 0.0
+                       for thrust, one, motion in zip(thrusts, thrusters, tick.flow)]
         if time >= self._sampled + SAMPLE:
             fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
             self.power.append((time, sum(
@@ -159,4 +161,5 @@ class Run:
         velocity = tick.motion.twist
         if velocity is None:
             velocity = (*self._allocator.settings.fallback_velocity, 0.0, 0.0, 0.0)
-        self.ticks.add(time, tick, velocity, setpoints, recorded, stopped)
+        self.ticks.add(time, tick, velocity, setpoints, deflections, recorded,
+                       stopped)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-LARGEST_WRENCH = 1e6  # [N, N*m]; beyond it a message is taken for broken
+LARGEST_WRENCH = 1e9  # [N, N*m]; beyond it a message is taken for broken
 LARGEST_VELOCITY = 50.0  # [m/s, rad/s]
 AHEAD = 100_000_000  # [ns] by which a stamp may be ahead of the clock
 UNIT = 1e-3  # how far from 1 the norm of a unit quaternion may be

@@ -12,7 +12,7 @@ from thrust_allocator.parameters.types import ParameterError
 
 UP, DOWN, TUNNEL = 'thrusters.up.', 'thrusters.down.', 'thrusters.tunnel.'
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
-NAMES = 'a list of one or more different names such as tunnel or stern_2 ([a-z][a-z0-9_]*)'
+NAMES = 'a list of one or more different names such as tunnel or FL_2 ([A-Za-z][A-Za-z0-9_]*)'
 PROPELLER = {DOWN + 'propeller.diameter': 0.2, DOWN + 'propeller.max_revolutions': 15.13,
              DOWN + 'propeller.thrust_slope': 0.34}
 
@@ -39,8 +39,8 @@ POINT = '[x, y, z], each a number in [-1000000, 1000000]'
 LISTS = {  # text of the message, a good list, and each item's ends
     UP + 'position': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
     UP + 'direction': (POINT + ', not all 0', [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
-    UP + 'bollard_thrust': ('[reverse, forward]: a number in [-1000000, 0] and a number in '
-                            '[0, 1000000], not both 0', [-1.0, 1.0], [(-1e6, 0), (0, 1e6)]),
+    UP + 'bollard_thrust': ('[reverse, forward]: a number in [-1e+09, 0] and a number in '
+                            '[0, 1e+09], not both 0', [-1.0, 1.0], [(-1e9, 0), (0, 1e9)]),
     UP + 'speed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     UP + 'opposed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     UP + 'speed_loss_quadratic': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
@@ -139,7 +139,7 @@ def test_a_wrong_value_is_refused(name, value):
        for side in (0, 1) if name != UP + 'direction']
     + [(f'wrench_weights.{dof}', 0.0) for dof in DOFS]
     + [(name, flag) for name in FLAGS for flag in (True, False)]
-    + [('vehicle_frame', 'flu'), ('message_frame', 'frd'), (UP + 'bollard_thrust', (-1e6, 1e6))]))
+    + [('vehicle_frame', 'flu'), ('message_frame', 'frd'), (UP + 'bollard_thrust', (-1e9, 1e9))]))
 def test_the_ends_of_a_range_are_allowed(name, value):
     """The outermost values are taken, in lists all at once; one Bollard limit may be 0."""
     given = vehicle({name: value})
@@ -205,10 +205,10 @@ def test_a_propeller_without_loss_is_refused():
         f'{UP}speed_loss: is missing, must be {PAIR}; or give {UP}propeller instead')
 
 
-@pytest.mark.parametrize('entry', ['', 'Up', '1up', '_up', 'up-1', 'up 1', 'up.1', 'up\n', 'süd',
+@pytest.mark.parametrize('entry', ['', '1up', '_up', 'up-1', 'up 1', 'up.1', 'up\n', 'süd',
                                    1, 1.0, True, None, ['up']], ids=repr)
 def test_a_malformed_thruster_name_is_refused(entry):
-    """A name that is not of the form [a-z][a-z0-9_]* is quoted in the message."""
+    """A name that is not of the form [A-Za-z][A-Za-z0-9_]* is quoted in the message."""
     assert message({'thruster_names': ['down', entry]}) == (
         f'thruster_names: has the entry {entry!r}, must be {NAMES}')
 
@@ -279,18 +279,6 @@ def test_what_a_fin_must_have(name):
     name = f'thrusters.fin.{name}'
     assert message({key: value for key, value in FIN.items() if key != name}).startswith(
         f'{name}: is missing, must be ')
-
-
-def test_an_unknown_name_elsewhere_is_a_warning():
-    """Unknown names at node level are ignored, with a warning for each in a fixed order."""
-    unknown = [f'zzzzz{digit}' for digit in '4071526']
-    measured = vehicle({DOWN + 'speed_loss': [24.0, 42.2]}, without=PROPELLER)
-    parameters = read_parameters(measured | dict.fromkeys([*unknown, 'rte']))
-    assert parameters.warnings == (
-        'rte: is no parameter here; did you mean rate?; it is ignored',
-        *(f'{name}: is no parameter here; it is ignored' for name in sorted(unknown)))
-    assert parameters.values == read_parameters(measured).values
-    assert read_parameters(measured).warnings == ()
 
 
 def test_a_loss_in_reverse_that_is_scaled_is_a_warning():

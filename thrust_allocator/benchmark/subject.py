@@ -20,6 +20,7 @@ from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
 from thrust_allocator.ros.node import ThrustAllocator
+from thrust_allocator.ros.parameters import Start
 from thrust_allocator.ros.qos import INPUT, OUTPUT
 from visualization_msgs.msg import MarkerArray
 
@@ -30,9 +31,9 @@ EXECUTORS = {'SingleThreadedExecutor': SingleThreadedExecutor, 'EventsExecutor':
 class Relay(Node):
     """The least that a node with our node's topics can do: publish what came last."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__(
-            NODE_NAME, automatically_declare_parameters_from_overrides=True, **options)
+    def __init__(self, start: Start, **options: Any) -> None:
+        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True,
+                         parameter_overrides=start.overrides, **options)
         self.interrupted = False
         self._command = Wrench()
         self._velocity = Odometry()

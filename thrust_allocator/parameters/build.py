@@ -1,13 +1,13 @@
 """What parameters describe: the vehicle, and its allocation problem set up."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from thrust_allocator.parameters.check import Parameters, read_parameters
-from thrust_allocator.parameters.file import NODE_NAME, read_parameter_file
+from thrust_allocator.parameters.file import given_for, NODE_NAME, read_files
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS, frd_signs
 from thrust_allocator.physics.models import MODELS
@@ -42,14 +42,29 @@ class Description:
         return _build(read_parameters({**self.parameters.values, **changes}), self.problem)
 
 
-def describe(given: Mapping[str, Any]) -> Description:
+def describe(given: Mapping[str, Any], own: Collection[str] = (),
+             notes: Iterable[str] = ()) -> Description:
     """
     Check parameters and build what they describe.
 
     :param given: values by full dotted name, as `parameters.file` or ROS 2 gives them.
+    :param own: the names that were given for this node alone.
+    :param notes: what is to be said of the values beside the check's own warnings.
     :raises ParameterError: if they describe no vehicle.
     """
-    return _build(read_parameters(given))
+    return _build(read_parameters(given, own, notes))
+
+
+def load_description(path: str | Path, node: str = f'/{NODE_NAME}') -> Description:
+    """
+    Return what a ROS 2 parameter file describes, as the node would take it; no ROS is needed.
+
+    :param path: the YAML file.
+    :param node: full name of the node whose parameters count, e.g. '/my_auv/thrust_allocator'.
+    :raises ParameterError: if the file cannot be read or describes no vehicle.
+    """
+    given = given_for(node, read_files([path]))
+    return describe(given.values, given.own, given.notes)
 
 
 def load_vehicle(path: str | Path, node: str = f'/{NODE_NAME}') -> Vehicle:
@@ -60,7 +75,7 @@ def load_vehicle(path: str | Path, node: str = f'/{NODE_NAME}') -> Vehicle:
     :param node: full name of the node whose parameters count, e.g. '/my_auv/thrust_allocator'.
     :raises ParameterError: if the file cannot be read or describes no vehicle.
     """
-    return describe(read_parameter_file(path, node)).vehicle
+    return load_description(path, node).vehicle
 
 
 def _build(parameters: Parameters, problem: AllocationProblem | None = None) -> Description:

@@ -1,19 +1,21 @@
 """The rules for a vehicle's parameters: what is missing, unknown, impossible or contradictory."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-import difflib
 from types import MappingProxyType
 from typing import Any
 
 from thrust_allocator.parameters.definition import Definition, REQUIRED
 from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.reserved import refuse_reserved
+from thrust_allocator.parameters.spelling import is_slip, nearest
 from thrust_allocator.parameters.table import NODE, THRUSTER, THRUSTER_NAMES
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.models import MODELS
 
 LONGEST_PERIOD = 2.0**63  # that a clock can hold [ns]
+GROUPS = ('thrusters', 'wrench_weights')  # that no other node has
 
 
 @dataclass(frozen=True)
@@ -31,14 +33,19 @@ class Parameters:
                 if key.startswith(prefix)}
 
 
-def read_parameters(given: Mapping[str, Any]) -> Parameters:
+def read_parameters(given: Mapping[str, Any], own: Collection[str] = (),
+                    notes: Iterable[str] = ()) -> Parameters:
     """
     Check a vehicle's parameters and fill in the defaults.
 
     :param given: values by full dotted name, as `parameters.file` or ROS 2 gives them.
+    :param own: the names that were given for this node alone, so that an unknown one among them is
+        a mistake and not another node's.
+    :param notes: what is to be said of the values beside the check's own warnings.
     :raises ParameterError: for the first value that is missing, unknown, of the wrong type or out
         of range, and for values that contradict each other.
     """
+    refuse_reserved(given)
     thrusters = _read(given, 'thruster_names', THRUSTER_NAMES)
     definitions = {definition.name: definition for definition in (THRUSTER_NAMES, *NODE)}
     if _read(given, 'velocity_type', definitions['velocity_type']) != 'odometry':
@@ -52,17 +59,27 @@ def read_parameters(given: Mapping[str, Any]) -> Parameters:
         for definition in (*THRUSTER, *_coefficients(given, prefix)):
             definitions[prefix + definition.name] = definition
 
-    warnings = []
-    for name in [name for name in given if name not in definitions]:
-        mistake = ParameterError(f'{name}: is no parameter here{_nearest(name, definitions)}')
-        if name.split('.')[0] in ('thrusters', 'wrench_weights'):
-            raise mistake
-        warnings.append(f'{mistake}; it is ignored')
+    foreign = _foreign(given, definitions, own)
     values = {name: _read(given, name, definition) for name, definition in definitions.items()}
     _check_together(values, thrusters)
-    warnings += _scaled_losses(values, thrusters)
-    return Parameters(MappingProxyType(values), MappingProxyType(definitions),
-                      tuple(sorted(warnings)))
+    warnings = (*notes, *foreign, *_scaled_losses(values, thrusters))
+    return Parameters(MappingProxyType(values), MappingProxyType(definitions), warnings)
+
+
+def _foreign(given: Mapping[str, Any], definitions: Collection[str],
+             own: Collection[str]) -> tuple[str, ...]:
+    """Return what to say of names that other nodes may have; refuse those meant for this one."""
+    unknown = sorted(name for name in given if name not in definitions)
+    groups = {name.partition('.')[0] for name in given}
+    free = [name for name in definitions if name not in given]
+    free += {name.partition('.')[0] for name in definitions} - groups
+    for name in unknown:
+        if name in own or name.partition('.')[0] in GROUPS or is_slip(name, free):
+            raise ParameterError(f'{name}: is no parameter here{nearest(name, definitions)}')
+    if not unknown:
+        return ()
+    listed = ', '.join(' '.join(name.split()) for name in unknown[:12])
+    return (f'{listed}{", ..." if len(unknown) > 12 else ""}: no parameter of this node, ignored',)
 
 
 def _read(given: Mapping[str, Any], name: str, definition: Definition) -> Any:
@@ -77,7 +94,7 @@ def _check_thruster_names(given: Mapping[str, Any], thrusters: tuple[str, ...]) 
     described = {name.split('.')[1] for name in given if name.startswith('thrusters.')}
     for name in sorted(described - set(thrusters)):
         raise ParameterError(f'thrusters.{name}: is not in thruster_names, must be one of '
-                             f'{", ".join(thrusters)}{_nearest(name, thrusters)}')
+                             f'{", ".join(thrusters)}{nearest(name, thrusters)}')
     for name in thrusters:
         if name not in described:
             raise ParameterError(f'thrusters.{name}: is missing, must describe the thruster '
@@ -124,13 +141,3 @@ def _scaled_losses(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> lis
     return [f'the speed loss of {", ".join(scaled)} in reverse is scaled from the forward one, '
             'which is optimistic: measure it, and give speed_loss instead of propeller'
             ] if scaled else []
-
-
-def _nearest(name: str, known: Iterable[str]) -> str:
-    """Ask whether the most similar known name was meant: of the same group if there is one."""
-    group, _, last = name.rpartition('.')
-    siblings = {one.rpartition('.')[2]: one for one in known if one.rpartition('.')[0] == group}
-    for candidate, names in ((last, siblings), (name, {one: one for one in known})):
-        for close in difflib.get_close_matches(candidate, names, n=1):
-            return f'; did you mean {names[close]}?'
-    return ''

@@ -7,7 +7,8 @@ import re
 import reprlib
 
 LARGEST = 1e6  # of any magnitude in a vehicle's description, in the unit of its parameter
-_NAME = re.compile(r'[a-z][a-z0-9_]*')
+LARGEST_FORCE = 1e9  # of forces, moments and powers [N, N*m, W]
+_NAME = re.compile(r'[A-Za-z][A-Za-z0-9_]*')
 
 
 class ParameterError(ValueError):
@@ -105,7 +106,7 @@ class Reals:
 class BollardThrust(Reals):
     """The greatest thrust at rest in reverse (<= 0) and forward (>= 0), not both zero."""
 
-    items: tuple[Real, ...] = (Real(-LARGEST, 0.0), Real(0.0, LARGEST))
+    items: tuple[Real, ...] = (Real(-LARGEST_FORCE, 0.0), Real(0.0, LARGEST_FORCE))
     layout: str = '[reverse, forward]'
     besides: str = ', not both 0'
 
@@ -182,12 +183,17 @@ class Names:
     """A list of different names, at least one."""
 
     def __str__(self) -> str:
-        return 'a list of one or more different names such as tunnel or stern_2 ([a-z][a-z0-9_]*)'
+        return ('a list of one or more different names such as tunnel or FL_2 '
+                '([A-Za-z][A-Za-z0-9_]*)')
 
     def read(self, name: str, value: object) -> tuple[str, ...]:
         """Return the names; raise ParameterError if one is malformed or stands twice."""
         if isinstance(value, str) or not isinstance(value, Sequence) or not value:
             raise ParameterError.wrong(name, value, self)
+        if all(isinstance(item, bool) for item in value):
+            raise ParameterError(
+                f'{name}: is {shown(list(value))}, must be {self}; ROS 2 takes y, n, yes, no, on '
+                "and off for true and false: they must be quoted, as in 'n'")
         for item in value:
             if not isinstance(item, str) or not _NAME.fullmatch(item):
                 raise ParameterError(

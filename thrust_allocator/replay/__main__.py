@@ -8,7 +8,7 @@ import shlex
 import sys
 
 from thrust_allocator.parameters.build import describe, Description
-from thrust_allocator.parameters.file import read_parameter_file
+from thrust_allocator.parameters.file import given_for, read_files
 from thrust_allocator.parameters.guesses import marked_guesses
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.replay.errors import ReplayError
@@ -112,8 +112,8 @@ def _vehicles(options: argparse.Namespace) -> Iterator[tuple[str, tuple[Descript
                               'of its own')
         known.add(name)
         try:
-            given = read_parameter_file(file, options.node)
-            description = describe(given)
+            given = given_for(options.node, read_files([file]))
+            description = describe(given.values, given.own, given.notes)
         except ParameterError as error:
             message = str(error)
             raise ParameterError(message if str(file) in message else f'{file}: {message}') \
@@ -124,7 +124,7 @@ def _vehicles(options: argparse.Namespace) -> Iterator[tuple[str, tuple[Descript
         yield name, (description, {})
         if options.settings:
             try:
-                changed = describe({**given, **dict(options.settings)})
+                changed = describe({**given.values, **dict(options.settings)})
             except ParameterError as error:
                 raise ParameterError(f'--set: {error}') from None
             settings = {key: changed.parameters.values[key] for key, _ in options.settings}

@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any, NoReturn
 
-from thrust_allocator.parameters.file import command_line_values, NODE_NAME
+from thrust_allocator.parameters.entry import parse_value
+from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.replay.topics import TYPES
 
@@ -52,6 +53,6 @@ def _setting(text: str) -> tuple[str, Any]:
     if not separator or not name or not value:
         raise argparse.ArgumentTypeError(f'{text!r} must be PARAMETER:=VALUE')
     try:
-        return next(iter(command_line_values(['-p', text]).items()))
+        return name, parse_value(value, name)
     except ParameterError as error:
         raise argparse.ArgumentTypeError(str(error)) from None

@@ -21,9 +21,10 @@ from thrust_allocator.ros.markers import thruster_markers
 from thrust_allocator.ros.messages import (
     quaternion_components, twist_components, vector_components, wrench_components)
 from thrust_allocator.ros.outputs import Outputs
-from thrust_allocator.ros.parameters import changes_of, coerced, declare, take_overrides
+from thrust_allocator.ros.parameters import changes_of, coerced, declare, Start, take_overrides
 from thrust_allocator.ros.qos import INPUT, OVERRIDABLE, unused_overrides
 from thrust_allocator.ros.reporter import Reporter
+from thrust_allocator.ros.topics import check_topics
 from thrust_allocator.tick import Allocator, Tick
 from visualization_msgs.msg import MarkerArray
 
@@ -36,18 +37,19 @@ LATE = 1.5  # periods after the tick before, from which on a tick is late
 class ThrustAllocator(Node):
     """Turns `cmd_wrench` and `odom` into `thruster_setpoints`, once per tick."""
 
-    def __init__(self, **options) -> None:
+    def __init__(self, start: Start = Start(), **options) -> None:
         """
         Start a node for the vehicle that its parameters describe.
 
+        :param start: what the process has read of the command line.
         :param options: passed on to `rclpy.node.Node`, e.g. `context` and `cli_args`.
-        :raises ParameterError: if the parameters describe no vehicle.
+        :raises ParameterError: if the parameters describe no vehicle, or two topics are one.
         """
-        super().__init__(
-            NODE_NAME, automatically_declare_parameters_from_overrides=True, **options)
-        self._description = take_overrides(self)
+        super().__init__(NODE_NAME, parameter_overrides=start.overrides, **options)
+        self._description = take_overrides(self, start)
         declare(self, self._description.parameters)
         values = self._description.parameters.values
+        check_topics(self, values['velocity_type'])
         self._allocator = Allocator.of(self._description)
         self._outputs = Outputs(self, values['thruster_names'], values['setpoint_unit'])
         self._outputs.publish_individually(values['publish_individual'])

@@ -1,6 +1,8 @@
 """A vehicle's parameters as parameters of a ROS 2 node: taken, declared, and changed."""
 
 from array import array
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -10,30 +12,46 @@ from rclpy.parameter import Parameter
 from thrust_allocator.parameters.build import describe, Description
 from thrust_allocator.parameters.check import Parameters
 from thrust_allocator.parameters.definition import Definition
-from thrust_allocator.parameters.file import is_of_every_node
-from thrust_allocator.parameters.types import as_real, Flag, ParameterError, Real, Reals
+from thrust_allocator.parameters.file import given_for, is_of_every_node
+from thrust_allocator.parameters.grammar import Grammar
+from thrust_allocator.parameters.types import as_real, ParameterError, Real, Reals
 from thrust_allocator.ros.qos import check_overrides
 
 
-def take_overrides(node: Node) -> Description:
-    """
-    Check what the command line and parameter files say for a node that has declared all of it.
+@dataclass(frozen=True)
+class Start:
+    """What a node is started with: rcl reads it too, but does not say where a value comes from."""
 
-    The vehicle's parameters are undeclared again, so that they can be declared as they should be.
+    files: Grammar = field(default_factory=Grammar)  # as they were read beside rcl, if they were
+    values: Mapping[str, Any] = field(default_factory=dict)  # of -p
+    named: frozenset[str] = frozenset()  # in any -p
 
-    :raises ParameterError: if it describes no vehicle.
+    @property
+    def overrides(self) -> list[Parameter]:
+        """Return the values of -p as parameters, which come before those of the files."""
+        return [Parameter(name, value=value) for name, value in self.values.items()
+                if value != []]
+
+
+def take_overrides(node: Node, start: Start) -> Description:
     """
-    given = {name: one.value for name, one in node.get_parameters_by_prefix('').items()}
-    Flag().read('use_sim_time', given['use_sim_time'])
+    Check what the command line and parameter files say for a node.
+
+    :raises ParameterError: if it describes no vehicle, or a file has nothing for this node.
+    """
+    with node.handle:  # what rcl has read, declared or not
+        overrides = node.handle.get_parameters(Parameter)
+    given = {name: [] if one.value is None else plain(one.value)  # an empty list or map
+             for name, one in overrides.items()} | dict(start.values)
     check_overrides(given)
-    own = {name: plain(value) for name, value in given.items() if not is_of_every_node(name)}
-    for name in own:
-        node.undeclare_parameter(name)
-    if 'thruster_names' not in own:
+    given = {name: value for name, value in given.items() if not is_of_every_node(name)}
+    name = node.get_fully_qualified_name()
+    read = given_for(name, start.files)
+    if 'thruster_names' not in given:
         raise ParameterError(
             'thruster_names: is missing, must be a list of names; does the top key of the '
-            f"parameter file match the node's name, {node.get_fully_qualified_name()}?")
-    return describe(own)
+            f"parameter file match the node's name, {name}?")
+    return describe(given, read.own | start.named, read.notes)
 
 
 def declare(node: Node, parameters: Parameters) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from thrust_allocator.parameters.types import ParameterError
@@ -45,6 +46,8 @@ def unused_overrides(node: Node) -> list[str]:
              for kind, ends in (('publisher', node.publishers),
                                 ('subscription', node.subscriptions))
              for one in ends for policy in ALLOWED}
-    return sorted(name for name in node.get_parameters_by_prefix('')
+    with node.handle:  # what rcl has read, declared or not
+        given = node.handle.get_parameters(Parameter)
+    return sorted(name for name in given
                   if name.startswith(PREFIX) and name not in known
                   and not name.startswith(tuple(f'{PREFIX}{topic}.' for topic in OF_EVERY_NODE)))

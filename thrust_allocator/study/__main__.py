@@ -8,8 +8,8 @@ from pathlib import Path
 import shlex
 import sys
 
-from thrust_allocator.parameters.build import describe
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
+from thrust_allocator.parameters.build import load_description
+from thrust_allocator.parameters.file import default_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.vehicle import Vehicle
@@ -78,7 +78,7 @@ def _vehicles(files: Sequence[Path], node: str) -> dict[str, Vehicle]:
             raise StudyError(f'{file}: goes by the name {name} like another one, must have a name '
                              'of its own')
         try:
-            description = describe(read_parameter_file(file, node))
+            description = load_description(file, node)
         except ParameterError as error:
             message = str(error)
             raise ParameterError(message if str(file) in message else f'{file}: {message}') \

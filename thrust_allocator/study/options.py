@@ -13,7 +13,7 @@ from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.study.manoeuvre import DRAG, PITCH, unit
 
 FASTEST = 50.0  # what the node takes for a velocity, too [m/s]
-LARGEST = 1e6  # and for a wrench [N, N*m]
+LARGEST = 1e9  # and for a wrench [N, N*m]
 MOST_SPEEDS = 100_000
 SPEEDS = '0:1.8:37'  # [m/s]
 

@@ -66,7 +66,7 @@ def test_a_current_from_another_frame_is_ignored():
 
 
 @pytest.mark.parametrize('orientation', [
-    [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.002], [0.0, 0.0, 0.0, 0.998], [1.0, 0.0, 0.0, 1.0],
+    [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0011], [0.0, 0.0, 0.0, 0.9989], [1.0, 0.0, 0.0, 1.0],
     [0.0, 0.0, np.nan, 1.0], [np.nan] * 4, [0.0, 0.0, 0.0, np.inf], [1e100] * 4], ids=str)
 def test_an_orientation_that_is_none(orientation):
     """With an orientation that is no unit quaternion the current is ignored."""

@@ -10,8 +10,8 @@ from thrust_allocator.parameters.build import describe
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.physics.models import Constant
-from thrust_allocator.physics.vehicle import Thruster
+from thrust_allocator.physics.models import Constant, MODELS
+from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
 COLUMNS = {  # physics: x forward, y starboard, z down; thrust axes meet the hull axis ahead
@@ -229,3 +229,17 @@ def test_a_thruster_is_plain_unless_said_otherwise():
     one = Thruster('t', (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), Constant((-10.0, 20.0)))
     assert (one.weight, one.enabled, one.max_rate, one.cutoff) == (1.0, True, 0.0, 0.0)
     assert one.column.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, -1.0]
+
+
+def test_what_is_rounding_is_no_thrust():
+    """Beside thrusters with long arms, a DOF that only rounding acts on is as good as dead."""
+    far = tuple(Thruster(name, (0.0, arm, 0.0), (1.0, 1e-8, 0.0), Constant((-10.0, 20.0)))
+                for name, arm in (('one', 100.0), ('other', -100.0)))
+    said, = Vehicle(far, (1.0, 1.0, 0.0, 0.0, 0.0, 1.0)).warnings()
+    assert 'no thruster can act on sway' in said
+
+
+@pytest.mark.parametrize('kind', MODELS.values(), ids=MODELS)
+def test_models_are_values(kind):
+    """Whatever the model, a thruster's cannot be changed behind the vehicle's back."""
+    assert kind.__dataclass_params__.frozen

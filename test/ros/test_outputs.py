@@ -174,6 +174,7 @@ def test_zeros_come_last_on_every_topic(stopping):
     known = len(peer.ticks)
     node.stop()
     peer.wait_until(lambda: not any(last.values()) and len(peer.ticks) > known, 'zeros')
+    assert node._timer.is_canceled(), 'a tick could come after the last one'
     tick = peer.ticks[-1]
     assert is_stopped(tick) and not tick['unallocated_wrench'].any()
     assert acknowledged >= SETPOINTS

@@ -84,3 +84,18 @@ def test_an_osqp_that_has_failed_is_not_asked_again(monkeypatch):
     assert failed.status == 'problem non convex' and not failed.solved
     monkeypatch.setattr(FallsIll, 'failing', False)
     assert problem.solve(WRENCH, limits).status == 'solved'
+
+
+def test_without_start_and_without_osqp_there_is_no_thrust(monkeypatch):
+    """Where the active set and OSQP fail at once, nothing is known: zeros, or the nearest limit."""
+    monkeypatch.setattr(problem_module, 'Solver', GivesUp)
+    monkeypatch.setattr(ActiveSet, 'solve', lambda self, wrench, limits: (
+        np.full(5, np.nan), np.full(5, np.nan), np.zeros(5, dtype=np.int8)))
+    monkeypatch.setattr(ActiveSet, 'refine', lambda self, wrench, limits, thrusts, at_bound, *_: (
+        thrusts, at_bound, False))
+    vehicle = mt2012()
+    limits = vehicle.bollard_thrust.copy()
+    limits[0, 1], limits[1, 2] = 3.0, -4.0  # as a rate limit may leave them
+    allocation = AllocationProblem(vehicle).solve(WRENCH, limits)
+    assert not allocation.solved
+    assert allocation.thrusts.tolist() == [0.0, 3.0, -4.0, 0.0, 0.0]

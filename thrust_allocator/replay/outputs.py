@@ -27,30 +27,35 @@ def write_summary(path: Path, found: dict[str, dict[str, Any]], about: dict[str,
 
 
 def write_ticks(path: Path, runs: Sequence[Run]) -> None:
-    """Write a row for each tick, of several vehicles one after another."""
+    """Write a row for each tick, of several vehicles one after another in one table."""
+    tables = [_table(run) for run in runs]
+    columns = list(dict.fromkeys(column for table in tables for column in table))
     with path.open('w', encoding='utf-8') as file:
-        for i, run in enumerate(runs):
-            names = [one.name for one in run.description.vehicle.thrusters]
-            unit = run.description.parameters.values['setpoint_unit']
-            columns = (
-                [f'{name} thrust [N]' for name in names], [f'{name} lower [N]' for name in names],
-                [f'{name} upper [N]' for name in names],
-                [f'{name} setpoint [{unit}]' for name in names],
-                [f'{name} recorded [{unit}]' for name in names],
-                *([f'{kind} {dof} [{u}]' for dof, u in zip(DOFS, _UNITS)]
-                  for kind in ('commanded', 'achieved', 'unallocated')),
-                [f'velocity {name}' for name in _VELOCITY], ['live', 'solved', 'stale', 'stopped'])
-            header = ','.join(['vehicle', 'time [s]', *sum(columns, [])])
-            if i == 0 or len(names) != len(runs[0].description.vehicle.thrusters):
-                file.write(header + '\n')
-            ticks = run.ticks
-            table = np.hstack([
-                *(ticks[name] for name in ('thrusts', 'lower', 'upper', 'setpoints', 'recorded',
-                                           'wrench', 'achieved', 'unallocated', 'velocity')),
-                *(ticks[name][:, np.newaxis] for name in ('live', 'solved', 'stale', 'stopped'))])
-            row = f'{run.name},%.9f' + ',%.9g' * (table.shape[1] - 4) + ',%d' * 4 + '\n'
-            file.writelines(row % (time, *values) for time, values in zip(
-                (ticks.times * 1e-9).tolist(), map(np.ndarray.tolist, table)))
+        file.write(','.join(['vehicle', 'time [s]', *columns]) + '\n')
+        for run, table in zip(runs, tables):
+            rows = np.column_stack([table[column] for column in columns if column in table])
+            formats = ['%.9g' if column in table else '' for column in columns]
+            row = ','.join([f'"{run.name}"', '%d.%09d', *formats]) + '\n'
+            file.writelines(row % (*divmod(time, 10**9), *values) for time, values in zip(
+                run.ticks.times.tolist(), map(np.ndarray.tolist, rows)))
+
+
+def _table(run: Run) -> dict[str, np.ndarray]:
+    """Return the columns of a run, (n,) each, by name and unit."""
+    unit = run.description.parameters.values['setpoint_unit']
+    table = {}
+    for i, one in enumerate(run.description.vehicle.thrusters):
+        for column, title in (('thrusts', 'thrust [N]'), ('lower', 'lower [N]'),
+                              ('upper', 'upper [N]'), ('setpoints', f'setpoint [{unit}]'),
+                              ('recorded', f'recorded [{unit}]')):
+            table[f'{one.name} {title}'] = run.ticks[column][:, i]
+    for column, title in (('wrench', 'commanded'), ('achieved', 'achieved'),
+                          ('unallocated', 'unallocated')):
+        for i, (dof, force) in enumerate(zip(DOFS, _UNITS)):
+            table[f'{title} {dof} [{force}]'] = run.ticks[column][:, i]
+    for i, title in enumerate(_VELOCITY):
+        table[f'velocity {title}'] = run.ticks['velocity'][:, i]
+    return table | {flag: run.ticks[flag] for flag in ('live', 'solved', 'stale', 'stopped')}
 
 
 def write_bag(path: Path, runs: Sequence[Run]) -> None:

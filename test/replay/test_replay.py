@@ -138,15 +138,15 @@ def test_vehicles_side_by_side(undrawn, replay, mt2012, variant, tmp_path):
     bag = write(tmp_path / 'bag', mission(1.0, speed=lambda t: 0.9))
     found = replay(bag, mt2012, variant({'thrusters.tunnel.decay': 0.3}),
                    '--set', 'wrench_weights.heave:=1.0e4')['vehicles']
-    names = ['mt2012', 'mt2012 with wrench_weights.heave 10000.0', 'vehicle',
-             'vehicle with wrench_weights.heave 10000.0']
+    names = ['mt2012', 'mt2012 with wrench_weights.heave 10000', 'vehicle',
+             'vehicle with wrench_weights.heave 10000']
     assert list(found) == names
     heave = [found[name]['unallocated_rms']['heave'] for name in names]
     assert heave[0] > 25.0 and heave[1] < 0.8 * heave[0] and heave[2] < 1.0
     report = (tmp_path / 'out' / 'report.md').read_text('utf-8')
     assert f'| | {" | ".join(names)} |' in report
     assert all(f'(setpoints_{name}.png)' in report for name in (
-        'mt2012', 'mt2012_with_wrench_weights_heave_10000_0', 'vehicle'))
+        'mt2012', 'mt2012_with_wrench_weights_heave_10000', 'vehicle'))
     with Reader(tmp_path / 'out' / 'replay.mcap') as reader:
         assert '/replay/vehicle/thrust_limits' in reader.topics
     with (tmp_path / 'out' / 'ticks.csv').open(encoding='utf-8') as file:

@@ -128,8 +128,13 @@ def _vehicles(options: argparse.Namespace) -> Iterator[tuple[str, tuple[Descript
             except ParameterError as error:
                 raise ParameterError(f'--set: {error}') from None
             settings = {key: changed.parameters.values[key] for key, _ in options.settings}
-            yield (f'{name} with ' + ', '.join(f'{key} {value}' for key, value in settings.items()),
+            yield (f'{name} with ' + ', '.join(map(_set, settings.items())),
                    (changed, settings))
+
+
+def _set(setting: tuple[str, object]) -> str:
+    name, value = setting
+    return f'{name} {value:g}' if isinstance(value, float) else f'{name} {value}'
 
 
 if __name__ == '__main__':

@@ -27,6 +27,8 @@ MOVING = sdf('<link name="arm"/><joint name="servo" type="revolute"><parent>base
     (sdf('<pose>@x 0 0 0 0 0</pose>'), ['placeholders (line 2: @x)', "sed 's/@x/VALUE/'"]),
     (sdf('<pose>@(x) 0 0 0 0 0</pose>'), ['EmPy', 'empy3']),
     (sdf('<pose>{{ x }} 0 0 0 0 0</pose>'), ['Jinja', 'jinja2']),
+    ('tam: {{ matrix }}', ['Jinja', 'jinja2', 'source.yaml']),
+    ('# of @somebody\ntam: [@a, @b]', ['placeholders (line 2: @a)']),
     ('<% n = 4 %>' + sdf(''), ['ERB', 'erb ']),
     (sdf('<plugin filename="hydro" name="h"/>'), ['no thruster plugin', 'hydro']),
     (sdf(gz_thruster('gone')), ['the joint gone of a thruster plugin is not in the file',

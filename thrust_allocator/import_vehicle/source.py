@@ -9,6 +9,7 @@ from thrust_allocator.import_vehicle.document import frame_of, groups, load
 from thrust_allocator.import_vehicle.layout import centre_of_mass, layouts
 from thrust_allocator.import_vehicle.matrix import matrices, Matrix, mounts_of_matrix
 from thrust_allocator.import_vehicle.simulator import read_simulator
+from thrust_allocator.import_vehicle.template import refuse_template
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.types import ParameterError
 
@@ -48,6 +49,16 @@ def _read(path: Path, frame: str | None) -> tuple[Configuration, list[float] | N
         raise SourceError('is no text') from None
     if text.lstrip().startswith('<'):
         return read_simulator(path, text), None
+    try:
+        return _read_yaml(path, text, frame)
+    except SourceError:
+        refuse_template(text, path, '.yaml')  # if it is one, that is why
+        raise
+
+
+def _read_yaml(path: Path, text: str, frame: str | None
+               ) -> tuple[Configuration, list[float] | None]:
+    """Return the vehicle of a matrix, a layout or a parameter file, and its centre of mass."""
     document = load(text)
     if _is_parameter_file(document):
         return _read_parameter_file(path), None

@@ -10,20 +10,24 @@ from thrust_allocator.import_vehicle.configuration import SourceError
 _KINDS = (
     (re.compile(r'<xacro:\w+|\$\{[^}\n]*\}|\$\(\s*(?:find|arg|env|eval|optenv|anon|dirname)\b'),
      'xacro', 'xacro {file} > {stem}.urdf'),
-    (re.compile(r'<%.*?%>', re.S), 'an ERB template', 'erb {file} > {stem}.sdf'),
+    (re.compile(r'<%.*?%>', re.S), 'an ERB template', 'erb {file} > {stem}{suffix}'),
     (re.compile(r'\{\{.*?\}\}|\{%.*?%\}', re.S), 'a Jinja template',
-     'jinja2 {file} > {stem}.sdf'),
+     'jinja2 {file} > {stem}{suffix}'),
     (re.compile(r'@\(.*?\)|@\{.*?\}@|@\[.*?\]', re.S), 'an EmPy template',
-     'empy3 {file} > {stem}.sdf'),
+     'empy3 {file} > {stem}{suffix}'),
     (re.compile(r'@[A-Za-z_]\w*@?'), 'a template with placeholders',
      "the script of its package that fills them in, or sed 's/{match}/VALUE/' {file} > "
-     '{stem}.sdf'))
-_COMMENT = re.compile(r'<!--.*?-->', re.S)
+     '{stem}{suffix}'))
+_COMMENT = {'.sdf': re.compile(r'<!--.*?-->', re.S), '.yaml': re.compile(r'#.*')}
 
 
-def refuse_template(text: str, path: Path) -> None:
-    """Raise SourceError with the command that expands an XML file, if it has anything to expand."""
-    text = _COMMENT.sub(lambda match: re.sub(r'[^\n]', ' ', match[0]), text)
+def refuse_template(text: str, path: Path, suffix: str = '.sdf') -> None:
+    """
+    Raise SourceError with the command that expands a file, if it has anything to expand.
+
+    :param suffix: of what comes of it, .sdf or .yaml.
+    """
+    text = _COMMENT[suffix].sub(lambda match: re.sub(r'[^\n]', ' ', match[0]), text)
     for pattern, kind, command in _KINDS:
         for match in pattern.finditer(text):
             if text[match.start() - 1:match.start()].isalnum():
@@ -33,4 +37,4 @@ def refuse_template(text: str, path: Path) -> None:
             raise SourceError(
                 f'is {kind} (line {line}: {found[:40]}): expand it first with '
                 + command.format(file=shlex.quote(str(path)), stem=path.name.split('.')[0],
-                                 match=found))
+                                 suffix=suffix, match=found))

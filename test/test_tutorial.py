@@ -86,21 +86,32 @@ def test_the_setpoints_shown(start, my_vehicle):
         assert_allclose(peer.settle(wrench, twist)['thruster_setpoints'], expected, atol=0.0051)
 
 
-def test_the_weights_shown(start, my_vehicle):
-    """The step on weights: what is achieved before and after, and what the diagnostics say."""
+def test_what_gives_way_as_shown(start, my_vehicle):
+    """The step on what gives way: setpoints and wrenches, and what the diagnostics say."""
     node, peer = start('start_enabled:=true', file=my_vehicle)
     command, forward = [200.0, 0.0, 0.0, 0.0, 0.0, 20.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     before = peer.settle(command, forward)
-    assert_allclose(before['achieved_wrench'][[0, 5]], [120.6, 0.0], atol=0.06)
+    assert_allclose(before['achieved_wrench'][[0, 5]], [87.7, 8.8], atol=0.06)
     assert_allclose(before['thrust_limits'][[0, 10]], [-37.27, 48.01], atol=0.005)
+
+    def after(name, value, *others):
+        """Set a parameter, compare the setpoints with those shown, return surge and yaw."""
+        for one in ((name, value), *others):
+            typed = one[1] if 'e' in one[1] else float(one[1])  # as `ros2 param set` reads it
+            assert node.set_parameters([Parameter(one[0], value=typed)])[0].successful
+        tick = peer.settle(command, forward)
+        assert_allclose(tick['thruster_setpoints'],
+                        yaml.safe_load(shown(f'{name} {value}')), atol=0.0051)
+        return tick['achieved_wrench'][[0, 5]]
+
+    assert_allclose(after('direction_keeping', '0.0'), [120.6, 0.0], atol=0.06)
+    node._report()  # of what was before
+    peer.settle(command, forward)
     node._report()
     said = re.sub('in [0-9]+% of', 'in 100% of', node._reporter.present('shortfall'))
     assert said == shown('## 8. Read the diagnostics')
-    assert node.set_parameters([Parameter('wrench_weights.yaw', value='1.0e6')])[0].successful
-    after = peer.settle(command, forward)
-    assert_allclose(after['thruster_setpoints'],
-                    yaml.safe_load(shown('wrench_weights.yaw 1.0e6')), atol=0.0051)
-    assert_allclose(after['achieved_wrench'][[0, 5]], [64.7, 14.9], atol=0.06)
+    assert_allclose(after('wrench_weights.yaw', '1.0e7'), [72.9, 12.7], atol=0.06)
+    after('power_limit', '600.0', ('direction_keeping', '1.0'))
 
 
 def test_the_refusals_shown(start, my_vehicle):

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from thrust_allocator.findings import Findings, Level
+from thrust_allocator.physics.power import PredictedPower
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.solve.problem import Allocation
@@ -42,10 +43,12 @@ class Tally:
     times: list[float] = field(default_factory=list)  # each tick's duration [s]
     allocated: list[Allocated] = field(default_factory=list)  # those that had a wrench
     late: int = 0  # ticks
+    newest: Tick | None = None
 
     def count(self, tick: Tick, seconds: float) -> None:
         """Count a tick that took so long [s]."""
         self.times.append(seconds)
+        self.newest = tick
         if tick.allocation is not None:
             self.allocated.append(
                 Allocated(tick.wrench, tick.unallocated, tick.allocation, tick.speed_limits))
@@ -67,7 +70,21 @@ class Tally:
             'tick time, worst [ms]': f'{1e3 * max(times):.3f}',
             'ticks': str(len(self.times)),
             'ticks late': str(self.late),
+            **self._giving_way(vehicle),
         }
+
+    def _giving_way(self, vehicle: Vehicle) -> dict[str, str]:
+        """Return by how much the newest command was scaled, and its power, as text by key."""
+        scales, power = (1.0, 1.0), 'unknown'
+        if self.allocated:
+            newest = self.allocated[-1].allocation
+            scales = newest.direction_scale, newest.power_scale
+        predicted = PredictedPower(vehicle.thrusters)
+        if predicted.known and self.newest is not None:
+            power = f'{predicted.in_flow(self.newest.flow)(self.newest.thrusts):.1f}'
+        return {'scale to keep the direction': f'{scales[0]:.3f}',
+                'scale to keep the power limit': f'{scales[1]:.3f}',
+                'predicted power [W]': power}
 
 
 def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 import math
 from typing import Any
 
@@ -11,8 +12,11 @@ from thrust_allocator.parameters.build import Description
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.flow import Flow
 from thrust_allocator.physics.frames import frd_signs
+from thrust_allocator.physics.power import PredictedPower
 from thrust_allocator.physics.rate import RateLimits
 from thrust_allocator.physics.vehicle import Vehicle
+from thrust_allocator.solve.attainable import AttainableSet, TooManyFaces
+from thrust_allocator.solve.compromise import Compromise
 from thrust_allocator.solve.problem import Allocation, AllocationProblem
 
 
@@ -71,16 +75,17 @@ class Allocator:
     """Decides ticks, one after another; what came last is in `Inputs`, times are in ns."""
 
     def __init__(self, vehicle: Vehicle, settings: Settings = Settings(),
-                 problem: AllocationProblem | None = None, past: Past | None = None) -> None:
+                 compromise: Compromise | None = None, past: Past | None = None) -> None:
         """
         Set up.
 
-        :param problem: of this vehicle, if there is one already.
+        :param compromise: what gives way beyond reach; the weights decide unless it is given.
         :param past: what the tick before has left, if there was one.
         :raises IllConditioned: as the allocation problem does.
         """
         self.vehicle, self.settings = vehicle, settings
-        self._problem = AllocationProblem(vehicle) if problem is None else problem
+        self._compromise = compromise or Compromise(vehicle, AllocationProblem(vehicle))
+        self._power = PredictedPower(vehicle.thrusters)
         self._past = Past(np.zeros(len(vehicle.thrusters))) if past is None else past
         self._bounds = ThrustBounds(vehicle)
         self.signs = frd_signs(settings.message_frame)
@@ -95,7 +100,7 @@ class Allocator:
     def of(cls, description: Description, before: 'Allocator | None' = None) -> 'Allocator':
         """Return the allocator that parameters describe, which goes on from the one `before`."""
         return cls(description.vehicle, Settings.from_values(description.parameters.values),
-                   description.problem, before and before._past)
+                   description.compromise, before and before._past)
 
     def tick(self, inputs: Inputs, now: int, enabled: bool = True) -> Tick:
         """
@@ -117,12 +122,38 @@ class Allocator:
             return Tick(limits, limits, past.stand, np.zeros(6),
                         np.zeros(6) if wrench is None else wrench, flow, enabled,
                         wrench, motion)
-        within_rate = self._rates(limits, past.stand, flow, elapsed)
-        allocation = self._problem.solve(self.signs * wrench, within_rate)
+        allocation = self._compromise.solve(
+            self.signs * wrench, limits, self._rates(limits, past.stand, flow, elapsed),
+            lambda: self._power.in_flow(flow))
         past.stand = self._rates.stand(allocation.thrusts, flow)
-        return Tick(within_rate, limits, allocation.thrusts, self.signs * allocation.achieved,
-                    self.signs * allocation.unallocated, flow, enabled, wrench, motion,
-                    allocation)
+        return Tick(allocation.limits, limits, allocation.thrusts,
+                    self.signs * allocation.achieved, self.signs * allocation.unallocated, flow,
+                    enabled, wrench, motion, allocation)
+
+    def wrench_limits(self, tick: Tick) -> np.ndarray | None:
+        """
+        Return the range that each component of the wrench could be given at a tick's speed limits.
+
+        The other controlled ones stay as achieved; `max_rate` and power do not count.
+
+        :return: (2, 6), smallest and largest, in the axes of the messages [N, N*m]; None for a
+            vehicle with too many faces.
+        """
+        if self._attainable is None:
+            return None
+        achieved = self.signs * tick.achieved
+        room = self._attainable.room(achieved, np.eye(6), tick.speed_limits)
+        ends = np.sort(self.signs[:, np.newaxis] * (achieved[:, np.newaxis] + room), axis=1)
+        return ends.T.copy()
+
+    @cached_property
+    def _attainable(self) -> AttainableSet | None:
+        enabled = np.array([float(thruster.enabled) for thruster in self.vehicle.thrusters])
+        try:
+            return AttainableSet(self.vehicle.configuration_matrix,
+                                 np.array(self.vehicle.wrench_weights), enabled)
+        except TooManyFaces:
+            return None
 
     def _limits(self, motion: Motion, now: int) -> tuple[Flow, np.ndarray]:
         """

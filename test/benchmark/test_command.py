@@ -33,7 +33,7 @@ def test_command_prints_a_row_for_every_rival():
 
 
 @pytest.mark.parametrize('arguments, named', [
-    (('solver',), 'solver is no part, must be one of solvers, growth, node'),
+    (('solver',), 'solver is no part, must be one of solvers, growth, saturation, node'),
     (('solvers', '--plot', 'x.svg'), '--plot draws the growth'),
     (('--plot', '/nowhere/x.svg'), '/nowhere/x.svg must end in .svg'),
     (('--plot', 'x.png'), 'x.png must end in .svg')])

@@ -7,6 +7,7 @@ import re
 from hypothesis import example, given, settings, strategies as st
 import pytest
 from thrust_allocator.parameters.check import read_parameters
+from thrust_allocator.parameters.definition import BY_AUTHORITY
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 
@@ -314,7 +315,9 @@ def test_the_defaults_are_those_documented():
         'velocity_time_constant': 0.0, 'fallback_velocity': (0.0, 0.0, 0.0),
         'stamped_wrench': False, 'velocity_type': 'odometry', 'setpoint_unit': 'newton',
         'publish_individual': False, 'marker_frame': 'base_link',
-        **{f'wrench_weights.{dof}': 10000.0 for dof in DOFS},
+        **{f'wrench_weights.{dof}': BY_AUTHORITY for dof in DOFS},
+        'direction_keeping': 0.0, 'direction_keeping_dofs': DOFS, 'power_limit': 0.0,
+        UP + 'bollard_power': (0.0, 0.0),
         UP + 'enabled': True, UP + 'weight': 1.0, UP + 'max_rate': 0.0, UP + 'cutoff': 0.0,
         UP + 'torque_ratio': 0.0, UP + 'critical_angle_slope': 0.2,
         UP + 'critical_angle_min': math.pi / 3, UP + 'second_critical_angle_offset': 0.0,

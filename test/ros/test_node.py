@@ -14,6 +14,7 @@ OUT = {'thrust_limits': 'std_msgs/msg/Float64MultiArray',
 IN = {'cmd_wrench': 'geometry_msgs/msg/Wrench', 'odom': 'nav_msgs/msg/Odometry',
       'current': 'geometry_msgs/msg/Vector3Stamped'}
 FOR_TOOLS = {'thruster_states': 'sensor_msgs/msg/JointState',
+             'wrench_limits': 'std_msgs/msg/Float64MultiArray',
              'thruster_markers': 'visualization_msgs/msg/MarkerArray'}
 REPORTS = {'/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray']}  # in every namespace
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # between frd and flu axes

@@ -164,7 +164,7 @@ def test_power_never_exceeds_its_limit_and_uses_it():
         for k in (0.0, 1.0):
             rule = compromise(vehicle, k, range(6), limit)
             for wrench in commands(vehicle, rng, 25):
-                found = rule.solve(wrench, limits, limits, power)
+                found = rule.solve(wrench, limits, limits, lambda: power)
                 assert found.power == power(found.thrusts) <= limit and found.solved
                 assert (found.thrusts >= limits[0]).all() and (found.thrusts <= limits[1]).all()
                 if found.power_scale < 1.0:
@@ -179,7 +179,7 @@ def test_power_scales_a_wrench_of_any_size():
     power, limits = power_of(vehicle), vehicle.bollard_thrust
     rule = compromise(vehicle, 0.0, range(6), 100.0)
     for wrench in commands(vehicle, rng, 20):
-        found = rule.solve(1e9 * wrench, limits, limits, power)
+        found = rule.solve(1e9 * wrench, limits, limits, lambda: power)
         assert 99.9 < found.power <= 100.0
 
 
@@ -191,7 +191,7 @@ def test_power_wins_over_the_rate():
     limits = np.array((last - 0.01, np.minimum(last + 0.01, full[1])))
     rule = compromise(vehicle, 0.0, range(6), 0.5 * power(last))
     for wrench in commands(vehicle, rng, 20):
-        found = rule.solve(wrench, full, limits, power)
+        found = rule.solve(wrench, full, limits, lambda: power)
         assert 0.499 * power(last) < found.power <= 0.5 * power(last)
         assert found.power_scale == 0.0
         assert (found.thrusts >= found.limits[0]).all() and (found.limits[0] <= limits[0]).all()
@@ -222,7 +222,7 @@ def test_no_jump_across_the_boundary(k, power):
         places = np.linspace(0.0, 1.0, 201)
         for _ in range(3):  # the interval with the largest step, two times refined by a hundred
             thrusts = np.array([rule.solve(start + place * (end - start), limits, limits,
-                                           predict).thrusts for place in places])
+                                           lambda: predict).thrusts for place in places])
             steps = np.abs(np.diff(thrusts, axis=0)).max(axis=1)
             places = np.linspace(*places[steps.argmax():][:2], 101)
         assert steps.max() < 1e-3 * np.abs(limits).max(), seed

@@ -11,7 +11,7 @@ from thrust_allocator.study.grid import Case, evaluate
 from thrust_allocator.study.manoeuvre import Manoeuvre
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS
 
-PICTURES = ('allocation_against_speed', 'worth', 'authority', 'directions')
+PICTURES = ('allocation_against_speed', 'worth', 'authority', 'directions', 'giving_way')
 SPEEDS = [0.0, 0.9, 1.8]
 
 

@@ -48,7 +48,7 @@ def random_case(rng, kind):
     return matrix, weights, enabled, limits, wrench
 
 
-def _programme(rows, point, direction, limits, largest=None):
+def largest_along(rows, point, direction, limits, largest=None):
     """Return the largest t, up to `largest`, for which rows tau = point + t direction."""
     unit = np.abs(limits).max() or 1.0  # thrusts near 1, rows of norm 1
     norms = np.linalg.norm(rows, axis=1)
@@ -79,7 +79,7 @@ def check(rng, kind):
     rows = matrix[dofs] * enabled
     wanted = in_range(rows, weights[dofs], wrench[dofs])
     if np.abs(wanted).max() > 1e-9 * np.abs(wrench[dofs]).max():
-        scale = _programme(rows, np.zeros(len(dofs)), wanted, limits, 1.0)
+        scale = largest_along(rows, np.zeros(len(dofs)), wanted, limits, 1.0)
     else:
         scale = 1.0  # nothing of it can be given by any thrust
     errors = [abs(attainable.scale(wrench, limits) - scale)]
@@ -92,8 +92,8 @@ def check(rng, kind):
         if np.abs(in_range(rows, weights[dofs], along) - along).max() > 1e-6:
             expected = [0.0, 0.0]
         else:
-            expected = [-_programme(rows, point[dofs], -along, limits),
-                        _programme(rows, point[dofs], along, limits)]
+            expected = [-largest_along(rows, point[dofs], -along, limits),
+                        largest_along(rows, point[dofs], along, limits)]
         whole = np.abs(rows) @ np.abs(limits).max(axis=0)
         way = max(np.min(whole[along != 0.0] / np.abs(along[along != 0.0])), 1e-9)
         errors += list(np.abs(found - expected) / way)

@@ -8,9 +8,9 @@ from pathlib import Path
 import platform
 import sys
 
-from thrust_allocator.benchmark import growth, node_cost, solvers
+from thrust_allocator.benchmark import growth, node_cost, saturation, solvers
 
-PARTS = ('solvers', 'growth', 'node')
+PARTS = ('solvers', 'growth', 'saturation', 'node')
 PACKAGES = ('numpy', 'osqp', 'scipy', 'quadprog', 'daqp', 'casadi', 'ros-jazzy-rclpy')
 
 
@@ -72,6 +72,8 @@ def main(args: Sequence[str] | None = None) -> int:
         solvers.report(*((300, 1) if options.quick else ()))
     if 'growth' in parts:
         growth.report(*((300, 1) if options.quick else ()), plot=options.plot)
+    if 'saturation' in parts:
+        saturation.report(*((1000,) if options.quick else ()))
     if 'node' in parts:
         node_cost.report(options.quick)
     return 0

@@ -129,9 +129,21 @@ def _check_together(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> No
                                    'large enough for its period to fit a clock')
     if not any(values[f'wrench_weights.{dof}'] for dof in DOFS):
         raise ParameterError('wrench_weights: are all 0, must leave at least one DOF controlled')
-    for thruster in thrusters:
-        model = MODELS[values[f'thrusters.{thruster}.model']]
-        MODEL_PARAMETERS[model].check(values, f'thrusters.{thruster}.')
+    for prefix in (f'thrusters.{thruster}.' for thruster in thrusters):
+        MODEL_PARAMETERS[MODELS[values[f'{prefix}model']]].check(values, prefix)
+        if values['power_limit'] and f'{prefix}bollard_thrust' in values:
+            _check_power(values, prefix)
+
+
+def _check_power(values: Mapping[str, Any], prefix: str) -> None:
+    """Refuse a thruster whose power cannot be predicted while there is a limit to it."""
+    power = values[f'{prefix}bollard_power']
+    if any(thrust and not watts
+           for thrust, watts in zip(values[f'{prefix}bollard_thrust'], power)):
+        raise ParameterError.wrong(
+            f'{prefix}bollard_power', list(power),
+            '[reverse, forward], each > 0 where bollard_thrust is not 0, for there is a '
+            'power_limit')
 
 
 def _scaled_losses(values: Mapping[str, Any], thrusters: tuple[str, ...]) -> list[str]:

@@ -5,9 +5,11 @@ from typing import Any, NamedTuple
 from thrust_allocator.parameters.types import LARGEST, Real, Reals
 
 REQUIRED = object()  # stands where a default would
+BY_AUTHORITY = object()  # too: what follows from what the vehicle can give
 
 POSITIVE = Real(0.0, LARGEST, above=True)
 NOT_NEGATIVE = Real(0.0, LARGEST)
+POWER = Real(0.0, 1e9)
 ANY = Real()
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from thrust_allocator.parameters.definition import (
-    ANY, Definition, NOT_NEGATIVE, pair, POSITIVE, REQUIRED)
+    ANY, Definition, NOT_NEGATIVE, pair, POSITIVE, POWER, REQUIRED)
 from thrust_allocator.parameters.types import (
     BollardThrust, Choice, Direction, LARGEST, ParameterError, Real)
 from thrust_allocator.physics.models import Constant, Fin, Propeller, ThrusterModel, Tunnel
@@ -35,6 +35,8 @@ class ModelParameters(NamedTuple):
 BOLLARD = (
     Definition('bollard_thrust', BollardThrust(), REQUIRED, 'N',
                'greatest thrust at rest [reverse, forward]'),
+    Definition('bollard_power', pair(POWER), (0.0, 0.0), 'W',
+               'power at bollard_thrust [reverse, forward]; needed where power_limit is given'),
     Definition('cutoff', Real(0.0, 1.0, below=True), 0.0, '',
                'share of Bollard thrust below which a limit is not worth using'),
     Definition('torque_ratio', ANY, 0.0, 'm', 'k: reaction torque about direction per N',
@@ -138,6 +140,7 @@ FIN = ModelParameters(
     instead={
         'bollard_thrust': 'has no thrust at rest; its limits follow from fin_area, lift_slope and '
                           'max_deflection',
+        'bollard_power': 'takes none to speak of',
         'cutoff': 'has no thrust at rest that it could be a share of; cut_in_speed takes it out',
         'torque_ratio': 'has no propeller'},
     check=_check_fin)

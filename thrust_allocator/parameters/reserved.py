@@ -10,12 +10,8 @@ RESERVED = (
     'tick_on_wrench',
     'nominal_voltage',
     'voltage_exponent',
-    'power_limit',
-    'direction_keeping',
-    'direction_keeping_dofs',
     'wrench_origin',
     'thrusters.*.effectiveness',
-    'thrusters.*.bollard_power',
 )
 
 

@@ -1,9 +1,9 @@
 """Every parameter of a vehicle: name, type, default, unit and meaning."""
 
 from thrust_allocator.parameters.definition import (
-    ANY, Definition, NOT_NEGATIVE, POSITIVE, REQUIRED)
+    ANY, BY_AUTHORITY, Definition, NOT_NEGATIVE, POSITIVE, POWER, REQUIRED)
 from thrust_allocator.parameters.types import (
-    Choice, Direction, Flag, Names, Real, Reals, Word)
+    Choice, Choices, Direction, Flag, Names, Real, Reals, Word)
 from thrust_allocator.physics.frames import DOFS, FRAMES
 from thrust_allocator.physics.models import MODELS
 
@@ -39,9 +39,16 @@ NODE = (
                'whether each thrust in the flow, in N, goes out on thrusters/<name>/thrust too'),
     Definition('marker_frame', Word(), 'base_link', '', 'frame id of thruster_markers'),
 ) + tuple(
-    Definition(f'wrench_weights.{dof}', Real(1e-3, 1e7, or_zero=True), 10000.0, '',
+    Definition(f'wrench_weights.{dof}', Real(1e-3, 1e7, or_zero=True), BY_AUTHORITY, '',
                f'R of {dof}: cost of its error squared; 0: not controlled')
     for dof in DOFS
+) + (
+    Definition('direction_keeping', Real(0.0, 1.0), 0.0, '',
+               'beyond reach: 0: the weights decide what gives way, 1: the wrench keeps its '
+               'direction'),
+    Definition('direction_keeping_dofs', Choices(DOFS), DOFS, '',
+               'which DOFs are scaled together to keep the direction'),
+    Definition('power_limit', POWER, 0.0, 'W', 'of all thrusters together; 0: none'),
 )
 
 THRUSTER = (

@@ -165,6 +165,27 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class Choices:
+    """A list of different words out of a few, at least one."""
+
+    words: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return 'a list of one or more of ' + ', '.join(self.words)
+
+    def read(self, name: str, value: object) -> tuple[str, ...]:
+        """Return the words; raise ParameterError if one is none of them or stands twice."""
+        if isinstance(value, str) or not isinstance(value, Sequence) or not value:
+            raise ParameterError.wrong(name, value, self)
+        for item in value:
+            if item not in self.words:
+                raise ParameterError(f'{name}: has the entry {shown(item)}, must be {self}')
+            if list(value).count(item) > 1:
+                raise ParameterError(f'{name}: has {item!r} twice, must be {self}')
+        return tuple(value)
+
+
+@dataclass(frozen=True)
 class Word:
     """A word that is not empty."""
 

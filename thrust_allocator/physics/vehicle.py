@@ -21,6 +21,7 @@ class Thruster:
     max_rate: float = 0.0  # greatest change, 0: unlimited [N/s; of a fin's deflection: rad/s]
     cutoff: float = 0.0  # kappa, share of Bollard thrust below which a limit is not worth using
     enabled: bool = True
+    bollard_power: tuple[float, float] = (0.0, 0.0)  # at the Bollard limits (reverse, forward) [W]
 
     @property
     def bollard_thrust(self) -> Limits:

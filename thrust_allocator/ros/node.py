@@ -25,12 +25,13 @@ from thrust_allocator.ros.parameters import changes_of, coerced, declare, Start,
 from thrust_allocator.ros.qos import INPUT, OVERRIDABLE, unused_overrides
 from thrust_allocator.ros.reporter import Reporter
 from thrust_allocator.ros.topics import check_topics
+from thrust_allocator.ros.wrench_limits import WrenchLimits
 from thrust_allocator.tick import Allocator, Tick
 from visualization_msgs.msg import MarkerArray
 
 LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
 REPORT_PERIOD = 1.0  # [s] between diagnostics
-MARKER_PERIOD = 0.2  # [s] between pictures, if anybody looks
+SHOW_PERIOD = 0.2  # [s] between pictures, and between wrench limits, if anybody looks
 LATE = 1.5  # periods after the tick before, from which on a tick is late
 
 
@@ -53,6 +54,8 @@ class ThrustAllocator(Node):
         self._allocator = Allocator.of(self._description)
         self._outputs = Outputs(self, values['thruster_names'], values['setpoint_unit'])
         self._outputs.publish_individually(values['publish_individual'])
+        for remark in self._description.remarks:
+            self.get_logger().info(remark)
         for warning in self._description.warnings:
             self.get_logger().warning(warning)
 
@@ -69,6 +72,7 @@ class ThrustAllocator(Node):
             'twist': f'velocity_type is {values["velocity_type"]}'})
         self.interrupted = False  # whether OSQP has caught a SIGINT
 
+        self._wrench_limits = WrenchLimits(self)
         self._marker_publisher = self.create_publisher(
             MarkerArray, 'thruster_markers', 1, qos_overriding_options=OVERRIDABLE)
         self._subscribe(values['stamped_wrench'], values['velocity_type'])
@@ -82,7 +86,7 @@ class ThrustAllocator(Node):
         self.add_post_set_parameters_callback(self._apply)
         self._after_messages = self.create_guard_condition(self._tick)
         self.create_timer(REPORT_PERIOD, self._report, clock=steady)
-        self.create_timer(MARKER_PERIOD, self._draw, clock=steady)
+        self.create_timer(SHOW_PERIOD, self._show, clock=steady)
         self._timer = self.create_timer(round(1e9 / values['rate']) * 1e-9, self._on_timer,
                                         clock=self._tick_clock)
         if self._simulated:
@@ -216,9 +220,13 @@ class ThrustAllocator(Node):
     def _report(self) -> None:
         self._reporter.report(self.vehicle, self._now(), self._simulated)
 
-    def _draw(self) -> None:
-        """Publish a picture of the last tick, if anybody looks."""
-        if self._last_tick is not None and self._marker_publisher.get_subscription_count():
+    def _show(self) -> None:
+        """Publish a picture of the last tick, and what could still be asked, if anybody looks."""
+        if self._last_tick is None:
+            return
+        self._reporter.note('wrench limits', self._wrench_limits.publish(
+            self._allocator, self._last_tick), self._now())
+        if self._marker_publisher.get_subscription_count():
             self._marker_publisher.publish(thruster_markers(
                 self.vehicle.thrusters, self._last_tick.thrusts, self._last_tick.limits,
                 self._allocator.signs[:3],

@@ -47,6 +47,10 @@ class Reporter:
         elif not self._findings.present('wrench'):
             self._note_no_wrench(now)
 
+    def note(self, kind: str, text: str, now: int) -> None:
+        """Note what is wrong beside the ticks, or with an empty text that nothing is."""
+        self._findings.note(kind, text, now)
+
     def present(self, kind: str) -> str:
         """Return the words of a finding that is there, or ''."""
         return self._findings.present(kind)

@@ -10,6 +10,7 @@ MOST_CHOICES = 25_000  # sets of thrusters that are looked at for their faces
 NO_SERVICE = 1e-9  # a singular value, relative to the largest, that serves no DOF
 DEGENERATE = 1e-7  # thrusters whose columns are closer to dependent span no face
 ALONG_FACE = 1e-9  # share of the way to a face, relative to the fastest, that leads along it
+ON_FACE = 1e-12  # from a face, relative to set and point, that is on it
 TINY = 1e-300  # instead of 0, for the distance of a face of a set that is flat
 DIGITS = 8  # in which the normals of one face agree
 
@@ -56,6 +57,8 @@ class AttainableSet:
         # tau = pinv(S B) S f gives the part of f in the range of B_D, exactly
         self._thrusts = np.ascontiguousarray(
             right[:rank].T / singular[:rank] @ (left[:, :rank].T * root))
+        p = matrix.shape[1]
+        self._inside = bytes(p * [1] + p * [0])  # above the lower limit and not above the upper one
         columns = self._range.T @ scaled
         normals = _normals(columns)
         self._normals = np.ascontiguousarray(
@@ -66,6 +69,11 @@ class AttainableSet:
         above, below = np.maximum(slopes, 0.0), np.minimum(slopes, 0.0)
         self._distances = np.ascontiguousarray(
             np.block([[below, above], [-above, -below]]))  # of the faces from 0, per limit
+
+    @property
+    def rank(self) -> int:
+        """Return r: in how many independent ways the thrusters act on D."""
+        return self._range.shape[1]
 
     @property
     def faces(self) -> int:
@@ -79,10 +87,7 @@ class AttainableSet:
         :param wrench: f, (6,); only the DOFs in D count [N, N*m].
         :param limits: (2, p), row 0 lower (<= 0), row 1 upper (>= 0) [N].
         """
-        thrusts = self._thrusts.dot(wrench)
-        if (thrusts >= limits[0]).all() and (thrusts <= limits[1]).all():
-            return 1.0
-        if not self.faces:
+        if (self._thrusts.dot(wrench) > limits).tobytes() == self._inside or not self.faces:
             return 1.0
         ways = self._normals.dot(wrench)
         ways[ways <= ALONG_FACE * ways.max()] = 0.0
@@ -91,30 +96,30 @@ class AttainableSet:
 
     def room(self, point: np.ndarray, directions: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """
-        Return how far one can go from a point along each direction, both ways, within the set.
+        Return where the line from a point along each direction enters and leaves the set.
 
-        :param point: (6,) attainable; only the DOFs in D count [N, N*m].
+        :param point: (6,); only the DOFs in D count, and of these what thrusts can give [N, N*m].
         :param directions: (n, 6); what they have outside D does not count.
         :param limits: (2, p), row 0 lower, row 1 upper [N].
-        :return: (n, 2), the smallest t (<= 0) and the largest (>= 0) for which point + t direction
-            is attainable; 0 where the direction leaves the range of B_D.
+        :return: (n, 2), the smallest t and the largest for which point + t direction is attainable:
+            around 0 for an attainable point; NaN where the line misses the set, 0 where it leaves
+            the range of B_D.
         """
-        distances = self._distances.dot(limits.ravel()) - self._normals.dot(point)
-        distances = np.maximum(distances, 0.0)  # a point on a face is rounded to either side
+        flat = limits.ravel()
+        distances = self._distances.dot(flat) - self._normals.dot(point)
+        near = distances > -ON_FACE * (np.abs(self._distances).dot(np.abs(flat))
+                                       + np.abs(self._normals).dot(np.abs(point)))
+        distances = np.where(near, np.maximum(distances, 0.0), distances)
         ways = self._normals @ directions.T  # (faces, n)
-        ahead = ways > ALONG_FACE * np.abs(ways).max(axis=0, initial=0.0)
-        share = np.full(ways.shape, np.inf)
-        np.divide(distances[:, np.newaxis], ways, out=share, where=ahead)
-        largest = share.min(axis=0, initial=np.inf)
-        half = len(ways) // 2  # the faces of -t are those of t, in the other order
-        swapped = np.vstack([distances[half:, np.newaxis], distances[:half, np.newaxis]])
-        share = np.full(ways.shape, np.inf)
-        np.divide(swapped, ways, out=share, where=ahead)
-        smallest = -share.min(axis=0, initial=np.inf)
-        served = self._serves(directions)
-        return np.where(served[:, np.newaxis], np.stack([smallest, largest], axis=1), 0.0)
+        along = np.abs(ways) <= ALONG_FACE * np.abs(ways).max(axis=0, initial=0.0)
+        share = distances[:, np.newaxis] / np.where(along, 1.0, ways)
+        largest = np.where(along | (ways < 0.0), np.inf, share).min(axis=0, initial=np.inf)
+        smallest = np.where(along | (ways > 0.0), -np.inf, share).max(axis=0, initial=-np.inf)
+        missed = (smallest > largest) | (along & (distances < 0.0)[:, np.newaxis]).any(axis=0)
+        found = np.where(missed[:, np.newaxis], np.nan, np.stack([smallest, largest], axis=1))
+        return np.where(self.serves(directions)[:, np.newaxis], found, 0.0)
 
-    def _serves(self, directions: np.ndarray) -> np.ndarray:
+    def serves(self, directions: np.ndarray) -> np.ndarray:
         """Tell which directions lie in the range of B_D, and are not 0 in D."""
         scaled = directions * self._root
         missed = scaled - scaled @ self._range @ self._range.T

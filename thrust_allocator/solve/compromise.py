@@ -47,14 +47,15 @@ class Compromise:
                               vehicle.reference_limits * enabled)
 
     def solve(self, wrench: np.ndarray, speed_limits: np.ndarray, limits: np.ndarray,
-              power: Callable[[np.ndarray], float] | None = None) -> Allocation:
+              power: Callable[[], Callable[[np.ndarray], float]] | None = None) -> Allocation:
         """
         Allocate a wrench.
 
         :param wrench: f, (6,), frd axes [N, N*m].
         :param speed_limits: (2, p) at the present velocity, row 0 lower, row 1 upper [N].
         :param limits: (2, p), the part of them within reach of the last setpoints [N].
-        :param power: predicts what thrusts (p,) take in the present flow [W]; needed with a limit.
+        :param power: asked only where there is a limit for a function that predicts what thrusts
+            (p,) take in the present flow [W].
         :return: the allocation; what is not allocated counts from the wrench as it came. Where
             even the setpoints nearest to 0 in `limits` take too much power, limits that exclude 0
             are moved towards it.
@@ -63,7 +64,7 @@ class Compromise:
         allocation = self._problem.solve(command, limits)
         if self._power_limit and power is not None:
             allocation = within_power(
-                self._problem, command, allocation, power, self._power_limit,
+                self._problem, command, allocation, power(), self._power_limit,
                 float(np.abs(self._thrusts @ command).max() / np.abs(limits).max()))
         elif command is wrench:
             return allocation

@@ -14,6 +14,7 @@ from thrust_allocator.study.directions import Directions
 from thrust_allocator.study.findings import named
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import unit
+from thrust_allocator.study.saturation import Saturation
 from thrust_allocator.study.style import (
     BOUNDS, finish, line, look, over_speed, panels, save)
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
@@ -136,6 +137,24 @@ def draw_directions(path: Path, thruster: Thruster, found: Directions) -> None:
                     ylabel='speed of the thruster (m/s)' if side else '',
                     xticks=range(0, 181, 30))
             figure.colorbar(shades, ax=one, label=f'{name} thrust (N)')
+        save(figure, path)
+
+
+def draw_giving_way(path: Path, found: Saturation) -> None:
+    """Draw which share of the commands keeps how much of its direction and of its length."""
+    styles = {name: line(i) for i, name in enumerate(found.angles)}
+    legend = [Line2D([], [], label=name, **style) for name, style in styles.items()]
+    with look():
+        figure, axes = panels(1, 2, 3.0, 'What gives way beyond reach', legend, sharey=True)
+        for one, values, label in ((axes[0, 0], found.angles, 'direction error (°)'),
+                                   (axes[0, 1], found.lost, 'lost of the command (%)')):
+            for name, style in styles.items():
+                ordered = np.sort(values[name]) * (100.0 if values is found.lost else 1.0)
+                share = np.linspace(0.0, 100.0, len(ordered))
+                one.plot(np.append(0.0, ordered), np.append(0.0, share), **style)
+            one.set(xlabel=label, xlim=(0.0, None), ylim=(0.0, 101.0))
+            one.grid(color='#E4E4E4', lw=0.6)
+        axes[0, 0].set_ylabel('commands with no more (%)')
         save(figure, path)
 
 

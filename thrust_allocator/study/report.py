@@ -13,9 +13,12 @@ from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import directions
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import Manoeuvre, unit
+from thrust_allocator.study.saturation import (
+    reach_of, saturation, saturation_table, TIMES_AUTHORITY)
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, shares, Sweep, without
 
 ROWS = 19  # of a table over speed, at most
+COMMANDS = 1000  # beyond reach
 FRAME = 'Axes: x forward, y starboard, z down; positive pitch is nose up.'
 
 
@@ -38,7 +41,7 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
                   outcomes: Sequence[Outcome], manoeuvre: Manoeuvre, speeds: Sequence[float],
                   thruster: Thruster, within: str = '') -> list[str]:
     """
-    Write the tables of pictures 1 to 4 of one vehicle, and return what the report says.
+    Write the tables of all pictures of one vehicle, and return what the report says.
 
     :param cases: at one heading; the first is the one without further failures, drawn in 1 and 2.
     :param thruster: whose bounds to draw in every direction.
@@ -59,6 +62,9 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
     found = directions(thruster, float(np.abs(speeds).max()) or 1.0)
     tables.write_directions(folder / 'directions.csv', found)
     drawings.add(pictures.draw_directions, folder / 'directions', thruster, found)
+    beyond = saturation(vehicle, reach_of(vehicle), COMMANDS)
+    tables.write_giving_way(folder / 'giving_way.csv', beyond)
+    drawings.add(pictures.draw_giving_way, folder / 'giving_way', beyond)
 
     state = f' ({findings.named(case.failed)})' if case.failed else ''
     weights = case.vehicle.wrench_weights
@@ -83,7 +89,12 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
         *(f'- {sentence}' for sentence in findings.gaps(cases, outcomes, speeds)), '',
         *_figure(within, 'directions', f'Bounds in every direction: {thruster.name}',
                  f'The forward and the reverse limit of {thruster.name} over its speed through the '
-                 'water and the angle between its motion and its thrust axis.')]
+                 'water and the angle between its motion and its thrust axis.'),
+        *_figure(within, 'giving_way', 'What gives way beyond reach',
+                 f'{COMMANDS} commands that the pseudo-inverse cannot follow, in every direction, '
+                 f'up to {TIMES_AUTHORITY:g} times the authority at rest: by how much their '
+                 'direction is missed, and how much of them, along it, is lost.'),
+        saturation_table(beyond), '']
     return lines
 
 

@@ -11,6 +11,7 @@ from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import Directions
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import unit
+from thrust_allocator.study.saturation import Saturation
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
 
 Row = Sequence[object]
@@ -72,6 +73,13 @@ def write_directions(path: Path, found: Directions) -> None:
     write_csv(path, ['speed [m/s]', 'angle of attack [deg]', 'lower [N]', 'upper [N]'], (
         [speed, angle, *found.limits[i, j]] for i, speed in enumerate(found.speeds)
         for j, angle in enumerate(found.angles)))
+
+
+def write_giving_way(path: Path, found: Saturation) -> None:
+    """Write direction error and lost share of every command, by allocator."""
+    write_csv(path, ['allocator', 'direction error [deg]', 'lost [%]'], (
+        [name, angle, 100.0 * lost] for name, angles in found.angles.items()
+        for angle, lost in zip(angles, found.lost[name])))
 
 
 def write_grid(path: Path, speeds: Sequence[float], cases: Sequence[Case],

@@ -1,6 +1,6 @@
 """A thruster whose limits hold at every speed."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,6 +32,6 @@ class Constant(ThrusterModel):
         """Return what the driver was told."""
         return equivalent
 
-    def bollard_equivalent(self, thrust: float, *flow: float) -> float:
-        """Return the thrust itself."""
-        return thrust
+    def equivalent_in(self, *flow: float) -> Callable[[float], float]:
+        """Return a function that returns the thrust itself."""
+        return lambda thrust: thrust

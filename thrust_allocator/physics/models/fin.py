@@ -1,6 +1,6 @@
 """A fin: no lift at rest, more with speed; the mirror image of a tunnel thruster."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 import math
@@ -85,9 +85,9 @@ class Fin(ThrusterModel):
         """Return the lift of a deflection [N]."""
         return self.thrust_per_radian(*flow) * equivalent
 
-    def bollard_equivalent(self, thrust: float, *flow: float) -> float:
-        """Return the deflection: what the servo of a fin must be told [rad]."""
-        return self.deflection(thrust, *flow)
+    def equivalent_in(self, *flow: float) -> Callable[[float], float]:
+        """Return the deflection as a function of the lift: what the servo must be told [rad]."""
+        return lambda thrust: self.deflection(thrust, *flow)
 
     def bollard_fraction(self, thrust: float, *flow: float) -> float:
         """Return the deflection as a share of the largest, -1 to 1."""

@@ -66,17 +66,23 @@ class ThrusterModel(ABC):
         """
 
     @abstractmethod
+    def equivalent_in(self, *flow: float) -> Callable[[float], float]:
+        """
+        Return `bollard_equivalent` as a function of the thrust alone, for one flow.
+
+        The inverse of `thrust_in_flow` where the thrust is not 0; at the limit it is Bollard
+        thrust.
+        """
+
     def bollard_equivalent(self, thrust: float, *flow: float) -> float:
         """
         Return what a driver calibrated at rest must be told to deliver `thrust` in the flow [N].
 
         Of a surface, the deflection that its servo must be told [rad].
 
-        The inverse of `thrust_in_flow` where the thrust is not 0; at the limit it is Bollard
-        thrust.
-
         :param thrust: wanted in the flow, within the limits there [N].
         """
+        return self.equivalent_in(*flow)(thrust)
 
     def thrust_per_radian(self, *flow: float) -> float:
         """Return the thrust of a surface in the flow by its deflection [N/rad]."""

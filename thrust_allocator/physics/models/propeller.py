@@ -95,16 +95,23 @@ class Propeller(ThrusterModel):
         thrust = max(e - turning * sqrt(e / full) - steady, 0.0)
         return thrust if side else -thrust
 
-    def bollard_equivalent(self, thrust: float, *flow: float) -> float:
+    def equivalent_in(self, *flow: float) -> Callable[[float], float]:
         """Return the inverse of `thrust_in_flow`, the root of a quadratic in sqrt(e) [N]."""
-        if thrust == 0.0:
-            return thrust
-        side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
-        full = abs(self.bollard_thrust[side])
-        turning, steady = self._losses(side, flow)
-        half = 0.5 * turning / sqrt(full)  # tau + steady = e - 2 half sqrt(e)
-        e = min((half + sqrt(half * half + tau + steady))**2, full)  # which rounding could exceed
-        return e if side else -e
+        sides = [(abs(full), *self._losses(side, flow))
+                 for side, full in enumerate(self.bollard_thrust)]
+        # tau + steady = e - 2 half sqrt(e)
+        laws = [(full, 0.5 * turning / sqrt(full) if full else 0.0, steady)
+                for full, turning, steady in sides]
+
+        def equivalent(thrust: float) -> float:
+            if thrust == 0.0:
+                return thrust
+            forward, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
+            full, half, steady = laws[forward]
+            e = min((half + sqrt(half * half + tau + steady))**2, full)  # rounding could exceed it
+            return e if forward else -e
+
+        return equivalent
 
     def _losses(self, side: int, flow: tuple[float, ...]) -> tuple[float, float]:
         """

@@ -1,6 +1,6 @@
 """A tunnel thruster at speed: Kostenko and Tolstonogov (2017), eq. 3.12, 3.13."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, hypot, log
@@ -47,18 +47,23 @@ class Tunnel(ThrusterModel):
             return equivalent
         return equivalent * exp(-self._load(one, other) / abs(equivalent))
 
-    def bollard_equivalent(self, thrust: float, along: float, one: float,
-                           other: float = 0.0) -> float:
+    def equivalent_in(self, along: float, one: float,
+                      other: float = 0.0) -> Callable[[float], float]:
         """Return the inverse of `thrust_in_flow`, by Wright's omega function [N]."""
-        if thrust == 0.0:
-            return thrust
-        side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
         load = self._load(one, other)
-        # tau = e exp(-load / e): with y = load / e, y + ln y = ln(load / tau)
-        y = float(wrightomega(log(load) - log(tau)).real) if load > 0.0 else 0.0
-        e = load / y if y > 1.0 else tau * exp(y)  # neither overflows nor divides by 0
-        e = min(e, abs(self.bollard_thrust[side]))  # which rounding could exceed
-        return e if side else -e
+        log_load = log(load) if load > 0.0 else 0.0
+
+        def equivalent(thrust: float) -> float:
+            if thrust == 0.0:
+                return thrust
+            side, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
+            # tau = e exp(-load / e): with y = load / e, y + ln y = ln(load / tau)
+            y = float(wrightomega(log_load - log(tau)).real) if load > 0.0 else 0.0
+            e = load / y if y > 1.0 else tau * exp(y)  # neither overflows nor divides by 0
+            e = min(e, abs(self.bollard_thrust[side]))  # which rounding could exceed
+            return e if side else -e
+
+        return equivalent
 
     def _load(self, one: float, other: float) -> float:
         """Return c rho S v_t^2 [N], which set against the thrust tells how much of it is left."""

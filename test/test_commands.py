@@ -33,7 +33,7 @@ def test_the_node_is_what_runs_by_itself(called, arguments, received):
 
 
 @pytest.mark.parametrize('name', [
-    'demo', 'import_vehicle', 'study', 'replay', 'soak', 'benchmark'])
+    'demo', 'import_vehicle', 'fit', 'study', 'replay', 'soak', 'benchmark'])
 def test_each_program_has_a_usage(name, capsys):
     """`thrust_allocator NAME --help` prints that program's usage and ends with status 0."""
     with pytest.raises(SystemExit) as ended:
@@ -44,11 +44,10 @@ def test_each_program_has_a_usage(name, capsys):
 
 @pytest.mark.parametrize('name, said', [
     ('studdy', 'studdy: is no command, must be one of node, demo, import_vehicle, '
-     'study, replay, soak, benchmark'),
-    ('studdy', '; did you mean study?'), ('nothing', 'nothing: is no command'),
-    *[(name, f'{name}: is not built yet') for name in command.NOT_BUILT]])
+     'fit, study, replay, soak, benchmark'),
+    ('studdy', '; did you mean study?'), ('nothing', 'nothing: is no command')])
 def test_other_names_are_refused(called, name, said, capsys):
-    """A name that is no program, or that is kept for a later one, ends in one line and status 2."""
+    """A name that is no program ends in one line and status 2."""
     assert command.main(['thrust_allocator', name]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count('\n'), called) == ('', 1, []) and said in err

@@ -12,12 +12,12 @@ COMMANDS = {
     'node': 'thrust_allocator.ros.process',
     'demo': 'thrust_allocator.demo',
     'import_vehicle': 'thrust_allocator.import_vehicle.__main__',
+    'fit': 'thrust_allocator.fit.__main__',
     'study': 'thrust_allocator.study.__main__',
     'replay': 'thrust_allocator.replay.__main__',
     'soak': 'thrust_allocator.soak',
     'benchmark': 'thrust_allocator.benchmark.__main__',
 }
-NOT_BUILT = ('fit',)  # names that are kept for what is to come
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -31,8 +31,6 @@ def main(args: Sequence[str] | None = None) -> int:
     name = 'node'
     if rest and rest[0].isidentifier():
         name, *rest = rest
-    if name in NOT_BUILT:
-        return _refuse(f'{name}: is not built yet')
     if name not in COMMANDS:
         close = difflib.get_close_matches(name, COMMANDS, n=1)
         return _refuse(f'{name}: is no command, must be one of {", ".join(COMMANDS)}'

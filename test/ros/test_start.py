@@ -65,6 +65,7 @@ def write(tmp_path):
 
 @pytest.mark.parametrize('arguments', [
     (), ('--ros-args',), ('--ros-args', '-p', 'rate:=20.0'), ('--ros-args', '-r', '__ns:=/a'),
+    ('--ros-args', '-r', '__ns:=/' + 'a' * 203),
     ('--ros-args', '-r', 'cmd_wrench:=/w', '--'), ('--ros-args', '--enable-rosout-logs')])
 def test_mt2012_runs_if_nothing_else_is_asked_for(start, arguments):
     """Without an argument of the node's own, and with -p and -r alone, and one WARN says so."""
@@ -107,8 +108,11 @@ def test_mt2012_runs_if_nothing_else_is_asked_for(start, arguments):
     (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml: cannot be read: No such'),
     (['--ros-args', '--params-file', '/tmp'], '/tmp: cannot be read: Is a directory'),
     (['--ros-args', '--log-level', 'loud'], "log level"),
-    (['--ros-args', '-r', '__ns:=/' + 'a' * 300], 'namespace'),
-    (['--ros-args', '-r', '__ns:=/' + 'a' * 225], 'Invalid service name'),
+    (['--ros-args', '-r', '__ns:=/' + 'a' * 300], '__ns: has 301 characters, must be a namespace '
+                                                  'of at most 204'),
+    (['--ros-args', '-r', '__ns:=/' + 'a' * 204], '__ns: has 205 characters'),
+    (['--ros-args', '-r', '__node:=' + 'a' * 300], 'node name length should not exceed'),
+    (['--ros-args', '-r', '__node:=' + 'a' * 240], 'Invalid service name'),
     (['--ros-args', '-r', '__node:=1a'], '__node:=1a'),
     (['--ros-args', '-r', 'cmd_wrench:=' + 'a' * 300], 'length'),
     (['--ros-args', '-r', 'cmd_wrench:=thruster_setpoints'], 'cmd_wrench and thruster_setpoints: '

@@ -28,6 +28,8 @@ _WITH_VALUE = ('-p', '--param', '--params-file', '-r', '--remap', '-e', '--encla
 _ALONE = tuple(f'--{switch}-{what}-logs' for switch in ('enable', 'disable')
                for what in ('stdout', 'rosout', 'external-lib'))
 _HELP = ('-h', '--help')
+# A full name in ROS 2 has at most 247 characters; this is the longest below the namespace
+_LONGEST_NAMESPACE = 247 - len('/thrust_allocator/set_parameters_atomically')
 
 
 @dataclass
@@ -94,6 +96,10 @@ def _check_text(word: str) -> None:
 
 
 def _take(line: CommandLine, option: str, value: str) -> None:
+    namespace = value.partition('__ns:=')[2]
+    if option in ('-r', '--remap') and len(namespace) > _LONGEST_NAMESPACE:
+        raise ParameterError(f'__ns: has {len(namespace)} characters, must be a namespace of at '
+                             f'most {_LONGEST_NAMESPACE}')
     if option == '--params-file':
         line.files.append(value)
     elif option in ('-p', '--param'):

@@ -57,9 +57,9 @@ def _head(found: Configuration) -> Iterator[str]:
             'warns of them at each start. Measure them at a bollard, or take them from the '
             "maker's table at your voltage (doc/tutorial.md), then delete the mark.")
     yield from _item(
-        'What speed takes: "model: constant" keeps the limits at every speed. Measure speed_loss, '
-        'or take the data of your propeller or tunnel (doc/parameters.md says which); the '
-        'propeller of a simulator is no such data.')
+        'What speed takes: "model: constant" keeps the limits at every speed. Fit speed_loss to '
+        'measurements (doc/fit.md), or take the data of your propeller or tunnel '
+        '(doc/parameters.md); the propeller of a simulator is no such data.')
     yield from _item(
         'Weights: a DOF left out of wrench_weights is weighted by authority (doc/parameters.md).')
 

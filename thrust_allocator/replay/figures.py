@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.replay.run import Run
-
-NOTHING = 0.01  # share of the command, or of Bollard thrust, that is not worth a word
+from thrust_allocator.shortfall import Yardstick
 
 
 class Arrivals:
@@ -45,7 +44,9 @@ def figures(run: Run, arrivals: Arrivals, end: int) -> dict[str, Any]:
     live = ticks['live']
     saturated = (ticks['at_bound'][live] != 0.0)
     missed, wrench, achieved = (ticks[name][live] for name in ('unallocated', 'wrench', 'achieved'))
-    reversed_ = (wrench * achieved < 0.0) & (np.abs(missed) > NOTHING * _reach(run))
+    floor = Yardstick(run.description.vehicle).floor
+    reversed_ = ((wrench * achieved < 0.0) & (np.abs(wrench) > floor)
+                 & (np.abs(achieved) > floor))
     count = max(int(live.sum()), 1)
     return {
         'ticks': len(ticks),
@@ -95,12 +96,6 @@ def difference(run: Run) -> dict[str, float] | None:
         return None
     return {'median': float(np.median(apart)), 'p99': float(np.percentile(apart, 99.0)),
             'max': float(apart.max())}
-
-
-def _reach(run: Run) -> np.ndarray:
-    """Return what all thrusters give together at rest, fins at 1 m/s, (6,) [N, N*m]."""
-    vehicle = run.description.vehicle
-    return np.abs(vehicle.configuration_matrix) @ np.abs(vehicle.reference_limits).max(axis=0)
 
 
 def _by_dof(values: np.ndarray) -> Mapping[str, float]:

@@ -11,7 +11,7 @@ TICKS = 1500
 RULES = ['fallback_velocity:=[0.5, 0.0, 0.1]', 'thrusters.up.max_rate:=200.0',
          'thrusters.left.max_rate:=20.0', 'thrusters.tunnel.max_rate:=1000.0',
          'thrusters.tunnel.cutoff:=0.1', 'thrusters.right.cutoff:=0.7']
-NONSENSE = [np.nan, np.inf, -np.inf, 1e308, -1e308, 1.1e6]
+NONSENSE = [np.nan, np.inf, -np.inf, 1e308, -1e308, 1.1e9]
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 
 

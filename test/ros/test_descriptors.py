@@ -7,12 +7,12 @@ import pytest
 from rclpy.parameter import parameter_value_to_python, Parameter
 from support.documents import shown
 from support.paths import ROOT
+from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.parameters.models import MODEL_PARAMETERS
 from thrust_allocator.parameters.table import NODE, THRUSTER
 from thrust_allocator.parameters.types import Real
 
 DOCUMENT = ROOT / 'doc/parameters.md'
-OF_EVERY_NODE = {'use_sim_time', 'start_type_description_service'}
 UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s or rad/s', 'N*s/m', 'N*s^2/m^2', 'rad', '1/rad',
          'rad*s/m', 'rev/s', 'm^2', 'W'}
 PLACE = {'position': [0.0, 0.0, 0.0], 'direction': [1.0, 0.0, 0.0], 'bollard_thrust': [-1.0, 1.0]}
@@ -35,7 +35,8 @@ def described(stepped, tmp_path):
         'thruster_names': list(BARE), 'thrusters': BARE}}}), encoding='utf-8')
     one = stepped(file=path)
     client = one._parameters
-    names = sorted(set(one._result(client.list_parameters([], 0)).result.names) - OF_EVERY_NODE)
+    names = sorted(name for name in one._result(client.list_parameters([], 0)).result.names
+                   if not is_of_every_node(name))
     descriptors = one._result(client.describe_parameters(names)).descriptors
     values = one._result(client.get_parameters(names)).values
     found = {}

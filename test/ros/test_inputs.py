@@ -116,7 +116,7 @@ def test_a_current_from_another_frame(stepped):
 
 
 @pytest.mark.parametrize('topic, cause, value', [
-    ('cmd_wrench', 'beyond 1e+06', 1.0001e6), ('odom', 'not finite', np.nan),
+    ('cmd_wrench', 'beyond 1e+09', 1.0001e9), ('odom', 'not finite', np.nan),
     ('current', 'beyond 50', -50.001)])
 def test_nonsense(stepped, topic, cause, value):
     """A message with one broken component is dropped whole and counted, and refreshes nothing."""

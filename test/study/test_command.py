@@ -70,7 +70,7 @@ def test_several_files_are_candidate_layouts(undrawn, variant, mt2012, tmp_path)
     (['--wrench', 'roll=5'], '--wrench: mt2012 does not control roll: its wrench_weights.roll is '
      '0'),
     (['--drag', 'much'], "argument --drag: 'much' is no drag in N*s^2/m^2, must be a number from "
-     '-1e+06 to 1e+06'),
+     '-1e+09 to 1e+09'),
     (['--drag', 'pitch=1'], 'argument --drag: drag is a force: surge, sway and heave'),
     (['--headings', '400'], "argument --headings: '400' is no heading in degrees, must be a number "
      'from -360 to 360'),

@@ -66,7 +66,7 @@ def test_the_described_vehicle(start, my_vehicle):
     assert_allclose(np.array([4.069, 5.245]) * 9.807, [39.9, 51.4], atol=0.05)
     assert node.vehicle.warnings() == []
     assert not peer.settle([40.0, 0.0, 0.0, 0.0, 0.0, 0.0])['thruster_setpoints'].any()
-    assert node._reporter.present('enable') == 'disabled: zero setpoints'
+    assert node.reporter.present('enable') == 'disabled: zero setpoints'
 
 
 def test_the_package_has_the_same_vehicle(my_vehicle):
@@ -108,7 +108,7 @@ def test_what_gives_way_as_shown(start, my_vehicle):
     node._report()  # of what was before
     peer.settle(command, forward)
     node._report()
-    said = re.sub('in [0-9]+% of', 'in 100% of', node._reporter.present('shortfall'))
+    said = re.sub('in [0-9]+% of', 'in 100% of', node.reporter.present('shortfall'))
     assert said == shown('## 8. Read the diagnostics')
     assert_allclose(after('wrench_weights.yaw', '1.0e7'), [72.9, 12.7], atol=0.06)
     after('power_limit', '600.0', ('direction_keeping', '1.0'))
@@ -140,7 +140,7 @@ def test_the_log_shown(start, my_vehicle):
     node, peer = start(file=my_vehicle)
     said = []
     logger = type('Logger', (), {'warning': said.append, 'info': said.append})
-    node._reporter._findings._logger = logger
+    node.reporter._findings._logger = logger
     for publisher in peer._inputs.values():
         peer.destroy_publisher(publisher)
     peer.wait_until(lambda: len(said) == 3, 'what the node says')

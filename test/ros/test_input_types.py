@@ -155,7 +155,7 @@ def test_a_twist_that_is_broken_or_late(twisted):
     assert np.abs(moving - still).max() > 1.0
     peer.twist = np.full(6, np.nan)
     peer.wait_until(lambda: node._inputs.dropped['twist not finite'] > 3, 'broken twists')
-    peer.wait_until(lambda: node._reporter.present('odometry'), 'the time-out')
+    peer.wait_until(lambda: node.reporter.present('odometry'), 'the time-out')
 
 
 def subscriptions(node):

@@ -7,18 +7,18 @@ import pytest
 from support.mission import BREAKING
 from support.processes import NODE
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 STOPS, TOGETHER = 20, 5  # nodes in all, and at a time
 
 
 def test_twenty_stops_in_a_row(send_out):
-    """Each of 20 nodes, stopped in full action by either signal, has zeros last and status 0."""
+    """Each of 20 nodes, stopped in full action by any signal, has zeros last and status 0."""
     for first in range(0, STOPS, TOGETHER):
         runs = [send_out(*NODE) for _ in range(TOGETHER)]
         for run in runs:
             run.wait_until_allocating()
         for i, run in enumerate(runs, first):
-            run.process.send_signal(SIGNALS[i % 2])
+            run.process.send_signal(SIGNALS[i % len(SIGNALS)])
         for run in runs:
             status, stderr = run.end()
             assert (status, stderr.count('[ERROR]'), stderr.count('Traceback')) == (0, 0, 0), stderr
@@ -61,7 +61,7 @@ def test_more_signals_during_the_stop(send_out):
     run.wait_until_allocating()
 
     def ended_by_now():
-        for number in SIGNALS:
+        for number in SIGNALS[:3]:  # a second SIGQUIT ends it as it does any process
             run.process.send_signal(number)
         return run.process.poll() is not None
 

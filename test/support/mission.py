@@ -87,16 +87,16 @@ class Run:
     def __init__(self, mission, launch, program):
         """Launch it; `program` is what follows `python` on the command line."""
         self.mission = mission
-        self._namespace = f'/stop_{uuid.uuid4().hex}'
-        mission.add(self._namespace)
+        self.namespace = f'/stop_{uuid.uuid4().hex}'
+        mission.add(self.namespace)
         self.process = launch(
-            *program, '--ros-args', '-r', f'__ns:={self._namespace}',
+            *program, '--ros-args', '-r', f'__ns:={self.namespace}',
             '-p', 'wrench_timeout:=600.0')  # so that nothing but the end can bring zeros
 
     @property
     def setpoints(self):
         """Return all setpoints that were heard."""
-        return self.mission.setpoints[self._namespace]
+        return self.mission.setpoints[self.namespace]
 
     def wait_until_allocating(self):
         """Wait until setpoints other than zero arrive."""
@@ -116,7 +116,7 @@ class Run:
         self.mission.wait_until(lambda: self.process.poll() is not None, 'the end')
         _, stderr = self.process.communicate()
         self.mission.wait_until(
-            lambda: not self.mission.count_publishers(f'{self._namespace}/thruster_setpoints'),
+            lambda: not self.mission.count_publishers(f'{self.namespace}/thruster_setpoints'),
             'the end of its publishers')
         if zeros:
             self.mission.wait_until(lambda: not any(self.setpoints[-1]), 'zeros as the last ones')

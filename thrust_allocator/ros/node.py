@@ -67,7 +67,7 @@ class ThrustAllocator(Node):
         self._enabled = values['start_enabled']
         self._last_tick: Tick | None = None
         self._last_time: int | None = None  # when the timer called last, on the tick's clock [ns]
-        self._reporter = Reporter(self, self._inputs, self.vehicle, {
+        self.reporter = Reporter(self, self._inputs, self.vehicle, {
             'cmd_wrench': f'stamped_wrench is {str(values["stamped_wrench"]).lower()}',
             'twist': f'velocity_type is {values["velocity_type"]}'})
         self.interrupted = False  # whether OSQP has caught a SIGINT
@@ -187,7 +187,7 @@ class ThrustAllocator(Node):
                 and now - self._last_time > LATE * self._timer.timer_period_ns)
         self._last_time = now
         if late:
-            self._reporter.late()
+            self.reporter.late()
             self._after_messages.trigger()  # so that what has come meanwhile is taken first
         else:
             self._tick()
@@ -198,7 +198,7 @@ class ThrustAllocator(Node):
         self._send(tick)
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
             self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
-        self._reporter.tick(tick, now, time.perf_counter() - start)
+        self.reporter.tick(tick, now, time.perf_counter() - start)
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
@@ -218,13 +218,13 @@ class ThrustAllocator(Node):
     # Reports
 
     def _report(self) -> None:
-        self._reporter.report(self.vehicle, self._now(), self._simulated)
+        self.reporter.report(self.vehicle, self._now(), self._simulated)
 
     def _show(self) -> None:
         """Publish a picture of the last tick, and what could still be asked, if anybody looks."""
         if self._last_tick is None:
             return
-        self._reporter.note('wrench limits', self._wrench_limits.publish(
+        self.reporter.note('wrench limits', self._wrench_limits.publish(
             self._allocator, self._last_tick), self._now())
         if self._marker_publisher.get_subscription_count():
             self._marker_publisher.publish(thruster_markers(

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 import re
-import signal
 import sys
 import tempfile
 import warnings
@@ -18,13 +17,15 @@ from thrust_allocator.parameters.grammar import Grammar
 from thrust_allocator.parameters.guesses import marked_guesses
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.ros.command_line import CommandLine, read_command_line, unknown_option, USAGE
+from thrust_allocator.ros.console import unblocked
+from thrust_allocator.ros.ending import ending_signals
 from thrust_allocator.ros.node import ThrustAllocator
 from thrust_allocator.ros.parameters import Start
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """
-    Run the node until SIGINT or SIGTERM.
+    Run the node until SIGINT, SIGTERM, SIGHUP or SIGQUIT.
 
     :param args: the command line, program name first; None for the process's own.
     :return: the exit status: 0 after a signal, 1 for a mistake in the parameters or on the command
@@ -32,24 +33,29 @@ def main(args: Sequence[str] | None = None) -> int:
         published.
     """
     args = list(sys.argv if args is None else args)
-    signals: list[int] = []  # received so far
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda number, _: signals.append(number))
-    try:
-        line = read_command_line(args)
-        if line.help:
-            print(USAGE)
-            return 0
-        default = '' if line.files else str(default_parameter_file())
+    with ending_signals() as signals, unblocked() as consoles:
+        try:
+            line = read_command_line(args)
+            if line.help:
+                print(USAGE, flush=True)
+                return 0
+            default = '' if line.files else str(default_parameter_file())
+            if default:
+                args[1:1] = ['--ros-args', '--params-file', default, '--']
+            node = _start(args, line, line.files or [default])
+        except (ParameterError, ParameterException, NameValidationException,
+                RuntimeError) as error:
+            print(f'{NODE_NAME}: {_sentence(error)}', file=sys.stderr)
+            rclpy.try_shutdown()
+            return 1
         if default:
-            args[1:1] = ['--ros-args', '--params-file', default, '--']
-        node = _start(args, line, line.files or [default])
-    except (ParameterError, ParameterException, NameValidationException, RuntimeError) as error:
-        print(f'{NODE_NAME}: {_sentence(error)}', file=sys.stderr)
-        rclpy.try_shutdown()
-        return 1
-    if default:
-        node.get_logger().warning(f'no parameter file given: running MT-2012 from {default}')
+            node.get_logger().warning(f'no parameter file given: running MT-2012 from {default}')
+        node.reporter.lost_lines = lambda: sum(console.lost for console in consoles)
+        return _run(node, signals)
+
+
+def _run(node: ThrustAllocator, signals: Sequence[int]) -> int:
+    """Spin until a signal has come, publish the last zeros, and return the exit status."""
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
@@ -62,8 +68,6 @@ def main(args: Sequence[str] | None = None) -> int:
         if alive := rclpy.ok():
             node.stop()
         rclpy.try_shutdown()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # Python, on its way out, would let them kill it
     if not alive:
         print(f'{NODE_NAME}: the ROS context was shut down from outside: the last setpoints stand',
               file=sys.stderr)

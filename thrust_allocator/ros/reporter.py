@@ -1,5 +1,7 @@
 """What the node says of itself: findings as they come and go, and diagnostics once a second."""
 
+from collections.abc import Callable
+
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 from std_msgs.msg import Header
@@ -36,7 +38,7 @@ class Reporter:
         self._last_report: int | None = None  # [ns]
         self._known_dropped = inputs.dropped.copy()
         self._mismatches: dict[str, str] = {}
-        self.lost_lines = 0  # of the log, which nobody read
+        self.lost_lines: Callable[[], int] = lambda: 0  # of the log, which nobody has read
 
     def tick(self, tick: Tick, now: int, seconds: float) -> None:
         """Take a tick into account that took so long [s]."""
@@ -94,7 +96,7 @@ class Reporter:
                     'age of odometry [s]': age_in_seconds(inputs.velocity, now),
                     **tally.figures(vehicle),
                     **{f'dropped: {cause}': str(n) for cause, n in sorted(inputs.dropped.items())},
-                    'log lines lost': str(self.lost_lines),
+                    'log lines lost': str(self.lost_lines()),
                 })]))
 
     def _look_at_the_graph(self, now: int) -> None:

@@ -18,6 +18,9 @@ def note_tick(findings: Findings, tick: Tick, now: int) -> None:
     note('odometry', motion.missing and (
         f'no odometry {motion.missing}: using fallback_velocity'
         + ('' if motion.twist is None else ' where it is tighter')), now)
+    note('battery', tick.supply.missing and (
+        f'no battery voltage {tick.supply.missing}: the limits are those '
+        + ('of the last one' if tick.supply.missing != 'yet' else 'at nominal_voltage')), now)
     note('enable', '' if tick.enabled else 'disabled: zero setpoints', now)
     note('solver', trouble(tick.allocation), now, Level.ERROR)
 
@@ -81,7 +84,9 @@ class Tally:
             scales = newest.direction_scale, newest.power_scale
         predicted = PredictedPower(vehicle.thrusters)
         if predicted.known and self.newest is not None:
-            power = f'{predicted.in_flow(self.newest.flow)(self.newest.thrusts):.1f}'
+            tick = self.newest
+            watts = predicted.in_flow(tick.flow, tick.models, tick.supply.share)(tick.thrusts)
+            power = f'{watts:.1f}'
         return {'scale to keep the direction': f'{scales[0]:.3f}',
                 'scale to keep the power limit': f'{scales[1]:.3f}',
                 'predicted power [W]': power}

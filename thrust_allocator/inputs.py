@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from thrust_allocator.supply import HIGHEST, Rating, SILENCE, Supply, Voltage
 
 LARGEST_WRENCH = 1e9  # [N, N*m]; beyond it a message is taken for broken
 LARGEST_VELOCITY = 50.0  # [m/s, rad/s]
@@ -68,6 +69,7 @@ class Inputs:
         self.wrench: Received | None = None
         self.velocity: Received | None = None
         self.current: Received | None = None
+        self.voltage: Voltage | None = None
         self.smoothing = Smoothing(0.0, 0.0)  # of the velocities that come
         self.dropped: Counter[str] = Counter()  # messages by topic and cause
 
@@ -112,12 +114,35 @@ class Inputs:
         if self._is_sound('current', velocity, LARGEST_VELOCITY):
             self.current = Received(velocity, now, frame)
 
+    def accept_voltage(self, voltage: float, now: int, rating: Rating) -> None:
+        """Remember the voltage of the supply [V]; one that no battery can have is dropped."""
+        if not math.isfinite(voltage):
+            self.dropped['battery not finite'] += 1
+        elif not 0.0 < voltage <= HIGHEST * rating.nominal_voltage:
+            self.dropped[f'battery outside 0 to {HIGHEST:g} nominal_voltage'] += 1
+        else:
+            before = voltage if self.voltage is None else self.voltage.at(now)
+            self.voltage = Voltage(voltage, before, now)
+
+    def supply(self, now: int, rating: Rating) -> Supply:
+        """Return what the supply leaves of the thrust: all of it if not known, or not counted."""
+        if not rating.nominal_voltage:
+            return Supply()
+        if self.voltage is None:
+            return Supply(missing='yet')
+        missing = ('' if now - self.voltage.time <= SILENCE else
+                   'since the clock went back' if self.voltage.time == NEVER else
+                   f'for {1e-9 * (now - self.voltage.time):.1f} s')
+        return Supply(rating.share(self.voltage.at(now)), missing)
+
     def forget(self) -> None:
         """Let all that came before count as expired: the clock has gone back."""
         self.wrench = None
         for received in (self.velocity, self.current):
             if received is not None:
                 received.time = NEVER
+        if self.voltage is not None:
+            self.voltage = self.voltage._replace(time=NEVER)
 
     def live_wrench(self, now: int, timeouts: Timeouts) -> np.ndarray | None:
         """Return the commanded wrench, (6,) [N, N*m], or None if none counts (any more)."""

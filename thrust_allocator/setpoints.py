@@ -3,23 +3,23 @@
 from collections.abc import Sequence
 
 from thrust_allocator.physics.flow import Flow
-from thrust_allocator.physics.vehicle import Thruster
+from thrust_allocator.physics.models import ThrusterModel
 
 
-def _newton(thrusts: list[float], thrusters: Sequence[Thruster], flow: Flow) -> list[float]:
+def _newton(thrusts: list[float], models: Sequence[ThrusterModel], flow: Flow) -> list[float]:
     return thrusts
 
 
-def _bollard_newton(thrusts: list[float], thrusters: Sequence[Thruster],
+def _bollard_newton(thrusts: list[float], models: Sequence[ThrusterModel],
                     flow: Flow) -> list[float]:
-    return [one.model.bollard_equivalent(thrust, *motion)
-            for thrust, one, motion in zip(thrusts, thrusters, flow)]
+    return [one.bollard_equivalent(thrust, *motion)
+            for thrust, one, motion in zip(thrusts, models, flow)]
 
 
-def _bollard_fraction(thrusts: list[float], thrusters: Sequence[Thruster],
+def _bollard_fraction(thrusts: list[float], models: Sequence[ThrusterModel],
                       flow: Flow) -> list[float]:
-    return [one.model.bollard_fraction(thrust, *motion)
-            for thrust, one, motion in zip(thrusts, thrusters, flow)]
+    return [one.bollard_fraction(thrust, *motion)
+            for thrust, one, motion in zip(thrusts, models, flow)]
 
 
 # What a setpoint may stand for: the thrust wanted in the flow [N], or what a driver calibrated at

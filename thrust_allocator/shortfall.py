@@ -30,13 +30,14 @@ class Yardstick:
     """What is worth a word in each DOF of a vehicle, whatever its size."""
 
     def __init__(self, vehicle: Vehicle) -> None:
-        """Measure what the vehicle, with all thrusters enabled, can give at rest."""
-        matrix, limits = vehicle.configuration_matrix, vehicle.bollard_thrust
+        """Measure what the vehicle, all thrusters enabled, can give at rest, or fins at 1 m/s."""
+        matrix, limits = vehicle.configuration_matrix, vehicle.reference_limits
         self.of = _essence(vehicle)
         reach = authority(matrix, limits, np.array(vehicle.wrench_weights) > 0.0)
         together = np.abs(matrix) @ np.abs(limits).max(axis=0)
         largest = np.abs(limits).max()
-        arm = max(float(np.linalg.norm(one.position)) for one in vehicle.thrusters) or 1.0
+        arm = max(float(np.linalg.norm(np.subtract(one.position, vehicle.wrench_origin)))
+                  for one in vehicle.thrusters) or 1.0
         nothing = np.repeat([largest, largest * arm], 3)
         served = together > ROUNDING * together.max()
         reach = np.where(reach > 0.0, reach, np.where(served, TOGETHER * together, nothing))
@@ -163,5 +164,5 @@ def _list(names: Sequence[str], chosen: np.ndarray) -> str:
 
 def _essence(vehicle: Vehicle) -> tuple:
     """Return what the authority at rest depends on."""
-    return (vehicle.configuration_matrix.tobytes(), vehicle.bollard_thrust.tobytes(),
+    return (vehicle.configuration_matrix.tobytes(), vehicle.reference_limits.tobytes(),
             tuple(weight > 0.0 for weight in vehicle.wrench_weights))

@@ -12,12 +12,14 @@ from thrust_allocator.parameters.build import Description
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.flow import Flow
 from thrust_allocator.physics.frames import frd_signs
+from thrust_allocator.physics.models import ThrusterModel
 from thrust_allocator.physics.power import PredictedPower
 from thrust_allocator.physics.rate import RateLimits
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.attainable import AttainableSet, TooManyFaces
 from thrust_allocator.solve.compromise import Compromise
 from thrust_allocator.solve.problem import Allocation, AllocationProblem
+from thrust_allocator.supply import Rating, Supply
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Settings:
     fallback_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # in those axes [m/s]
     timeouts: Timeouts = Timeouts(wrench=500_000_000, velocity=500_000_000, current=10 * 10**9)
     velocity_time_constant: float = 0.0  # of the filter on the velocity, 0: none [s]
+    rating: Rating = Rating()
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Settings':
@@ -37,7 +40,8 @@ class Settings:
             values['rate'], values['message_frame'], values['fallback_velocity'],
             Timeouts(*(round(values.get(f'{name}_timeout', 0.0) * 1e9)
                        for name in ('wrench', 'odometry', 'current'))),
-            values['velocity_time_constant'])
+            values['velocity_time_constant'],
+            Rating(values['nominal_voltage'], values['voltage_exponent']))
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,8 @@ class Tick:
     enabled: bool
     wrench: np.ndarray | None  # the command, (6,) [N, N*m]; None: none that counts
     motion: Motion  # what was known of the velocity
+    supply: Supply  # and of the supply
+    models: tuple[ThrusterModel, ...]  # of the thrusters at that supply
     allocation: Allocation | None = None  # None: the vehicle is stopped
 
 
@@ -115,20 +121,24 @@ class Allocator:
         inputs.smoothing = self._smoothing  # of what comes from now on
         motion = inputs.motion(now, self.settings.timeouts)
         wrench = inputs.live_wrench(now, self.settings.timeouts)
+        supply = inputs.supply(now, self.settings.rating)
+        if supply.share != self._bounds.supply:
+            self._bounds.set_supply(supply.share)
+            self._fallback_limits = self._bounds.in_flow(self._fallback_flow)
         flow, limits = self._limits(motion, now)
         past.time = now
         if wrench is None or not enabled:
             past.stand = np.zeros_like(past.stand)
             return Tick(limits, limits, past.stand, np.zeros(6),
                         np.zeros(6) if wrench is None else wrench, flow, enabled,
-                        wrench, motion)
+                        wrench, motion, supply, self._bounds.models)
         allocation = self._compromise.solve(
             self.signs * wrench, limits, self._rates(limits, past.stand, flow, elapsed),
-            lambda: self._power.in_flow(flow))
+            lambda: self._power.in_flow(flow, self._bounds.models, supply.share))
         past.stand = self._rates.stand(allocation.thrusts, flow)
         return Tick(allocation.limits, limits, allocation.thrusts,
                     self.signs * allocation.achieved, self.signs * allocation.unallocated, flow,
-                    enabled, wrench, motion, allocation)
+                    enabled, wrench, motion, supply, self._bounds.models, allocation)
 
     def wrench_limits(self, tick: Tick) -> np.ndarray | None:
         """
@@ -148,10 +158,10 @@ class Allocator:
 
     @cached_property
     def _attainable(self) -> AttainableSet | None:
-        enabled = np.array([float(thruster.enabled) for thruster in self.vehicle.thrusters])
+        in_use = np.array([float(thruster.in_use) for thruster in self.vehicle.thrusters])
         try:
             return AttainableSet(self.vehicle.configuration_matrix,
-                                 np.array(self.vehicle.wrench_weights), enabled)
+                                 np.array(self.vehicle.wrench_weights), in_use)
         except TooManyFaces:
             return None
 

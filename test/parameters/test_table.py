@@ -27,9 +27,11 @@ NUMBERS = {
     **{f'wrench_weights.{dof}': ('[0.001, 1e+07]', [1e-3, 1e7], [-1e-3]) for dof in DOFS},
     UP + 'critical_angle_min': ('(0, 1.570796]', [5e-324, math.pi / 2], [0.0]),
     UP + 'opposed_floor': ('[0, 1]', [0.0, 1.0], []),
+    UP + 'effectiveness': ('[0, 1]', [0.0, 1.0], []),
+    'voltage_exponent': ('[0, 3]', [0.0, 3.0], []),
     TUNNEL + 'cutoff': ('[0, 1)', [0.0, ALMOST_1], []),
-    **dict.fromkeys(['odometry_timeout', UP + 'max_rate', UP + 'critical_angle_slope',
-                     TUNNEL + 'decay'], NOT_NEGATIVE),
+    **dict.fromkeys(['odometry_timeout', 'nominal_voltage', UP + 'max_rate',
+                     UP + 'critical_angle_slope', TUNNEL + 'decay'], NOT_NEGATIVE),
     **dict.fromkeys(['water_density', 'wrench_timeout', 'current_timeout', UP + 'weight',
                      TUNNEL + 'area', *PROPELLER], POSITIVE),
     **dict.fromkeys([UP + 'torque_ratio', UP + 'second_critical_angle_offset',
@@ -46,6 +48,7 @@ LISTS = {  # text of the message, a good list, and each item's ends
     UP + 'opposed_loss': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     UP + 'speed_loss_quadratic': (PAIR, [1.0, 1.0], [(0, 1e6)] * 2),
     'fallback_velocity': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
+    'wrench_origin': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
 }
 FLAGS = ['start_enabled', UP + 'enabled']
 WORDS = {'vehicle_frame': 'one of frd, flu', 'message_frame': 'one of frd, flu',
@@ -245,7 +248,8 @@ def test_the_defaults_of_a_fin():
     own = {name: value for name, value in values.items() if name.startswith('thrusters.fin.')}
     assert {name: own[name] for name in own if name not in FIN} == {
         'thrusters.fin.astern_share': 0.0, 'thrusters.fin.max_rate': 0.0,
-        'thrusters.fin.weight': 1.0, 'thrusters.fin.enabled': True}
+        'thrusters.fin.weight': 1.0, 'thrusters.fin.enabled': True,
+        'thrusters.fin.effectiveness': 1.0}
 
 
 @pytest.mark.parametrize('name, value, said', [
@@ -313,14 +317,16 @@ def test_the_defaults_are_those_documented():
         'message_frame': 'flu', 'start_enabled': True, 'wrench_timeout': 0.5,
         'odometry_timeout': 0.5, 'current_timeout': 10.0,
         'velocity_time_constant': 0.0, 'fallback_velocity': (0.0, 0.0, 0.0),
+        'wrench_origin': (0.0, 0.0, 0.0), 'nominal_voltage': 0.0, 'voltage_exponent': 1.2,
         'stamped_wrench': False, 'velocity_type': 'odometry', 'setpoint_unit': 'newton',
         'publish_individual': False, 'marker_frame': 'base_link',
         **{f'wrench_weights.{dof}': BY_AUTHORITY for dof in DOFS},
         'direction_keeping': 0.0, 'direction_keeping_dofs': DOFS, 'power_limit': 0.0,
         UP + 'bollard_power': (0.0, 0.0),
-        UP + 'enabled': True, UP + 'weight': 1.0, UP + 'max_rate': 0.0, UP + 'cutoff': 0.0,
-        UP + 'torque_ratio': 0.0, UP + 'critical_angle_slope': 0.2,
-        UP + 'critical_angle_min': math.pi / 3, UP + 'second_critical_angle_offset': 0.0,
+        UP + 'enabled': True, UP + 'effectiveness': 1.0, UP + 'weight': 1.0,
+        UP + 'max_rate': 0.0, UP + 'cutoff': 0.0, UP + 'torque_ratio': 0.0,
+        UP + 'critical_angle_slope': 0.2, UP + 'critical_angle_min': math.pi / 3,
+        UP + 'second_critical_angle_offset': 0.0,
         UP + 'second_critical_angle_slope': 0.2, UP + 'opposed_loss': (0.0, 0.0),
         UP + 'opposed_floor': 0.85, UP + 'angle_law': 'paper',
         UP + 'speed_loss_quadratic': (0.0, 0.0)}

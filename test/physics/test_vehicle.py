@@ -49,7 +49,7 @@ def test_the_columns_of_mt2012(name):
     index = [thruster.name for thruster in vehicle.thrusters].index(name)
     assert vehicle.configuration_matrix.shape == (6, 5)
     assert vehicle.configuration_matrix[:, index] == pytest.approx(COLUMNS[name], abs=1e-4)
-    assert vehicle.thrusters[index].column == pytest.approx(COLUMNS[name], abs=1e-4)
+    assert vehicle.thrusters[index].column() == pytest.approx(COLUMNS[name], abs=1e-4)
 
 
 def test_thrusters_stand_in_the_order_of_thruster_names():
@@ -109,6 +109,23 @@ def test_a_column_is_force_moment_and_reaction_torque(position, direction, torqu
     np.testing.assert_allclose(vehicle.configuration_matrix[:, 0], [
         dx, dy, dz, y * dz - z * dy + torque_ratio * dx, z * dx - x * dz + torque_ratio * dy,
         x * dy - y * dx + torque_ratio * dz], rtol=0.0, atol=1e-12)
+
+
+@given(point, point)
+@settings(deadline=None)
+def test_wrenches_act_where_they_are_said_to(position, origin):
+    """About another point the force is the same and the moment less origin x force; in flu too."""
+    given = single(position, (0.6, 0.0, 0.8)) | {'thrusters.t.torque_ratio': 0.1}
+    here = build(given).configuration_matrix[:, 0]
+    there = build(given | {'wrench_origin': origin})
+    column = there.configuration_matrix[:, 0]
+    np.testing.assert_array_equal(column[:3], here[:3])
+    np.testing.assert_allclose(column[3:], here[3:] - np.cross(origin, here[:3]), atol=1e-9)
+    assert there.thrusters == build(given).thrusters  # the flow is that at the body origin's r
+    turned = build(given | {'wrench_origin': [origin[0], -origin[1], -origin[2]],
+                            'thrusters.t.position': [position[0], -position[1], -position[2]],
+                            'thrusters.t.direction': (0.6, 0.0, -0.8), 'vehicle_frame': 'flu'})
+    np.testing.assert_allclose(turned.configuration_matrix[:, 0], column, atol=1e-9)
 
 
 @given(st.tuples(*[st.floats(-1e6, 1e6)] * 3))
@@ -228,7 +245,7 @@ def test_a_thruster_is_plain_unless_said_otherwise():
     """Of weight 1, on, without reaction torque, rate limit or cut-off."""
     one = Thruster('t', (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), Constant((-10.0, 20.0)))
     assert (one.weight, one.enabled, one.max_rate, one.cutoff) == (1.0, True, 0.0, 0.0)
-    assert one.column.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, -1.0]
+    assert one.column().tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, -1.0]
 
 
 def test_what_is_rounding_is_no_thrust():

@@ -13,8 +13,8 @@ from thrust_allocator.parameters.table import NODE, THRUSTER
 from thrust_allocator.parameters.types import Real
 
 DOCUMENT = ROOT / 'doc/parameters.md'
-UNITS = {'Hz', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s or rad/s', 'N*s/m', 'N*s^2/m^2', 'rad', '1/rad',
-         'rad*s/m', 'rev/s', 'm^2', 'W'}
+UNITS = {'Hz', 'V', 'W', 'kg/m^3', 's', 'm/s', 'm', 'N', 'N/s or rad/s', 'N*s/m', 'N*s^2/m^2',
+         'rad', '1/rad', 'rad*s/m', 'rev/s', 'm^2'}
 PLACE = {'position': [0.0, 0.0, 0.0], 'direction': [1.0, 0.0, 0.0], 'bollard_thrust': [-1.0, 1.0]}
 BARE = {  # one thruster of each description, with nothing given that has a default
     'measured': PLACE | {'model': 'propeller', 'speed_loss': [1.0, 1.0]},

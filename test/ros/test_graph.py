@@ -14,7 +14,7 @@ README = (ROOT / 'README.md').read_text('utf-8')
 SAFETY = (ROOT / 'doc/safety.md').read_text('utf-8')
 OF_EVERY_NODE = {'/rosout', '/parameter_events', '/clock'}
 VARIANTS = (  # of the parameters, which together make the node use all that it may ever use
-    ('use_sim_time:=true', 'publish_individual:=true'),
+    ('use_sim_time:=true', 'publish_individual:=true', 'nominal_voltage:=16.0'),
     ('stamped_wrench:=true', 'velocity_type:=twist'), ('velocity_type:=twist_with_covariance',))
 
 

@@ -161,7 +161,7 @@ def test_what_ros_reads_starts(start, write, more):
     ('start_enable: false', 'start_enable: is no parameter here; did you mean start_enabled?'),
     ('wrench_weight: {surge: 1.0}', 'wrench_weight.surge: is no parameter here'),
     ('fallback_velocity: [0, 0.5, 0]', 'fallback_velocity: is [0, 0.5, 0], mixes whole and real'),
-    ('thrusters.FL.effectiveness: 0.5', 'thrusters.FL.effectiveness: is not built yet'),
+    ('thrusters.FL.effectiveness: 1.5', 'thrusters.FL.effectiveness: is 1.5, must be a number'),
     ('rate: 20.0\n   x: 1', 'is not valid YAML'), ('a: &a 1\n    b: *a', 'no aliases such as *a'),
     ('a: [1, x]', 'a: is [1, x], must not mix whole numbers and words')])
 def test_what_is_wrong_is_named(refusal, write, more, said):

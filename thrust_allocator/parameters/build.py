@@ -141,7 +141,8 @@ def _vehicle(parameters: Parameters) -> Vehicle:
     return Vehicle(
         tuple(_thruster(name, {**values, **parameters.of_thruster(name)})
               for name in values['thruster_names']),
-        tuple(values[f'wrench_weights.{dof}'] for dof in DOFS))
+        tuple(values[f'wrench_weights.{dof}'] for dof in DOFS),
+        tuple((frd_signs(values['vehicle_frame'])[:3] * values['wrench_origin']).tolist()))
 
 
 def _thruster(name: str, values: Mapping[str, Any]) -> Thruster:

@@ -8,10 +8,6 @@ from thrust_allocator.parameters.types import ParameterError
 # Whoever builds one deletes its line; * stands for any thruster
 RESERVED = (
     'tick_on_wrench',
-    'nominal_voltage',
-    'voltage_exponent',
-    'wrench_origin',
-    'thrusters.*.effectiveness',
 )
 
 

@@ -1,8 +1,10 @@
 """The moving bounds tau_min(v, theta) and tau_max(v, theta) of the allocation problem."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from thrust_allocator.physics.flow import Flow, FlowAtThrusters
-from thrust_allocator.physics.models import Limits, LimitsLaw
+from thrust_allocator.physics.models import Limits, LimitsLaw, ThrusterModel
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
 
 
@@ -16,7 +18,21 @@ class ThrustBounds:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.flow = FlowAtThrusters(vehicle.thrusters)
-        self._laws = [_law(thruster) for thruster in vehicle.thrusters]
+        self._thrusters = vehicle.thrusters
+        self._use([thruster.model for thruster in vehicle.thrusters], 1.0)
+
+    def set_supply(self, share: float) -> None:
+        """
+        Have the limits follow the voltage of the supply.
+
+        :param share: of the thrust at rest that it leaves, (V / V_0)^n [-].
+        """
+        if share != self.supply:
+            self._use([thruster.model.at_supply(share) for thruster in self._thrusters], share)
+
+    def _use(self, models: Sequence[ThrusterModel], share: float) -> None:
+        self.models, self.supply = tuple(models), share
+        self._laws = [_law(one, model) for one, model in zip(self._thrusters, models)]
 
     def __call__(self, velocity: np.ndarray) -> np.ndarray:
         """
@@ -33,19 +49,18 @@ class ThrustBounds:
         return np.array([law(*motion) for law, motion in zip(self._laws, flow)]).T.copy()
 
 
-def _law(thruster: Thruster) -> LimitsLaw:
+def _law(thruster: Thruster, model: ThrusterModel) -> LimitsLaw:
     """Return the limits of a thruster as a function of its speed along and across its axis."""
-    if not thruster.enabled:
+    if not thruster.in_use:
         return lambda *flow: (0.0, 0.0)
-    law = thruster.model.limits
-    return _cut_off(law, thruster) if thruster.cutoff else law
+    return _cut_off(model.limits, thruster.cutoff) if thruster.cutoff else model.limits
 
 
-def _cut_off(law: LimitsLaw, thruster: Thruster) -> LimitsLaw:
+def _cut_off(law: LimitsLaw, cutoff: float) -> LimitsLaw:
     """Return a law that takes a thruster out, continuously, where its limit is hardly any use."""
-    reverse, forward = thruster.bollard_thrust
-    # (limit - kappa T_0) / (1 - kappa), written so that it is T_0 to the bit at rest
-    per_loss = thruster.cutoff / (1.0 - thruster.cutoff)
+    reverse, forward = law(0.0, 0.0, 0.0)  # T_0'
+    # (limit - kappa T_0') / (1 - kappa), written so that it is T_0' to the bit at rest
+    per_loss = cutoff / (1.0 - cutoff)
 
     def limits(*flow: float) -> Limits:
         lower, upper = law(*flow)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from thrust_allocator.physics.flow import Flow
+from thrust_allocator.physics.models import ThrusterModel
 from thrust_allocator.physics.vehicle import Thruster
 
 FULLY_COUNTED = 0.01  # share of Bollard thrust from which on a thruster's power counts whole
@@ -11,7 +12,7 @@ FULLY_COUNTED = 0.01  # share of Bollard thrust from which on a thruster's power
 
 class PredictedPower:
     """
-    P = sum P_0 |e / T_0|^1.5, with e the Bollard-equivalent of each thrust.
+    P = sum P_0 |e / (eta T_0)|^1.5, with e what the propeller's speed gives at rest.
 
     Power goes with the third power of the propeller's speed, thrust at rest with the second. The
     exponent fits a T200 (Blue Robotics, 16 V) within 6 % at part load.
@@ -30,14 +31,18 @@ class PredictedPower:
         """Tell whether the power of any thruster is known."""
         return bool(self._thrusters)
 
-    def in_flow(self, flow: Flow) -> Callable[[np.ndarray], float]:
+    def in_flow(self, flow: Flow, models: Sequence[ThrusterModel],
+                supply: float = 1.0) -> Callable[[np.ndarray], float]:
         """
         Return the power as a function of the thrusts alone.
 
         :param flow: how each thruster moves through the water.
+        :param models: of the thrusters at the present supply.
+        :param supply: share of the thrust at rest that it leaves: a lower voltage leaves as much
+            less speed of rotation to be driven [-].
         :return: function of thrusts (p,) within the limits in that flow [N], that gives power [W].
         """
-        laws = [(i, one.model.equivalent_in(*flow[i]), one.bollard_thrust, one.bollard_power)
+        laws = [(i, models[i].equivalent_in(*flow[i]), one.bollard_thrust, one.bollard_power)
                 for i, one in self._thrusters]
 
         def power(thrusts: np.ndarray) -> float:
@@ -50,6 +55,6 @@ class PredictedPower:
                     share = equivalent(thrust) / full
                     counted = min(1.0, thrust / (FULLY_COUNTED * full))
                     total += bollard_power[side] * share**1.5 * counted
-            return total
+            return total * supply**1.5
 
         return power

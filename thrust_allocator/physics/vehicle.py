@@ -29,10 +29,18 @@ class Thruster:
         return self.model.bollard_thrust
 
     @property
-    def column(self) -> np.ndarray:
-        """Return the wrench of 1 N of thrust: (6,), [d; r x d + k d] (physics of eq. 2.6)."""
-        d = np.array(self.direction)
-        return np.concatenate([d, np.cross(self.position, d) + self.torque_ratio * d])
+    def in_use(self) -> bool:
+        """Whether it may be used and has anything left."""
+        return self.enabled and self.model.strength > 0.0
+
+    def column(self, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> np.ndarray:
+        """
+        Return the wrench of 1 N of thrust: (6,), [d; r x d + k d] (physics of eq. 2.6).
+
+        :param origin: the point that r is counted from, where the wrench acts [m].
+        """
+        d, arm = np.array(self.direction), np.subtract(self.position, origin)
+        return np.concatenate([d, np.cross(arm, d) + self.torque_ratio * d])
 
 
 @dataclass(frozen=True)
@@ -41,11 +49,12 @@ class Vehicle:
 
     thrusters: tuple[Thruster, ...]
     wrench_weights: tuple[float, ...]  # R of surge ... yaw; 0: not controlled
+    wrench_origin: tuple[float, float, float] = (0.0, 0.0, 0.0)  # where wrenches act [m]
 
     @cached_property
     def configuration_matrix(self) -> np.ndarray:
         """B of eq. 2.6, (6, p): column i is the wrench of 1 N of thrust i [N/N, N*m/N]."""
-        return _frozen(np.stack([thruster.column for thruster in self.thrusters], axis=1))
+        return _frozen(np.stack([one.column(self.wrench_origin) for one in self.thrusters], axis=1))
 
     @cached_property
     def bollard_thrust(self) -> np.ndarray:

@@ -104,6 +104,8 @@ class Run:
                                    content.orientation)
         elif message.name == 'current' and self._velocity == 'odom':
             inputs.accept_current(content.velocity, content.frame, now)
+        elif message.name == 'battery' and self._allocator.settings.rating.nominal_voltage:
+            inputs.accept_voltage(content, now, self._allocator.settings.rating)
         if inputs.dropped != self._known_dropped:
             for cause in inputs.dropped - self._known_dropped:
                 self.events.append(Event(now, f'message dropped: {cause}'))
@@ -147,16 +149,16 @@ class Run:
 
     def _tick(self, time: int, recorded: np.ndarray | None = None, stopped: bool = False) -> None:
         tick = self._allocator.tick(self._inputs, time, self._enabled and not stopped)
-        thrusters, thrusts = self.description.vehicle.thrusters, tick.thrusts.tolist()
+        thrusts = tick.thrusts.tolist()
         unit = self.description.parameters.values['setpoint_unit']
-        setpoints = SETPOINTS[unit](thrusts, thrusters, tick.flow)
-        deflections = [one.model.deflection(thrust, *motion) if one.model.DEFLECTS else 0.0
-                       for thrust, one, motion in zip(thrusts, thrusters, tick.flow)]
+        setpoints = SETPOINTS[unit](thrusts, tick.models, tick.flow)
+        deflections = [model.deflection(thrust, *motion) if model.DEFLECTS else 0.0
+                       for thrust, model, motion in zip(thrusts, tick.models, tick.flow)]
         if time >= self._sampled + SAMPLE:
-            fractions = SETPOINTS['bollard_fraction'](thrusts, thrusters, tick.flow)
+            fractions = SETPOINTS['bollard_fraction'](thrusts, tick.models, tick.flow)
             self.power.append((time, sum(
-                abs(fraction)**1.5 for fraction, one in zip(fractions, thrusters)
-                if not one.model.DEFLECTS)))
+                abs(fraction)**1.5 for fraction, model in zip(fractions, tick.models)
+                if not model.DEFLECTS)))
             self._sampled = time
         velocity = tick.motion.twist
         if velocity is None:

@@ -12,6 +12,8 @@ from rclpy.clock import Clock, ClockType, JumpThreshold
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.subscription import Subscription
+from sensor_msgs.msg import BatteryState
 from std_srvs.srv import SetBool
 from thrust_allocator.inputs import Inputs
 from thrust_allocator.parameters.file import NODE_NAME
@@ -76,6 +78,8 @@ class ThrustAllocator(Node):
         self._marker_publisher = self.create_publisher(
             MarkerArray, 'thruster_markers', 1, qos_overriding_options=OVERRIDABLE)
         self._subscribe(values['stamped_wrench'], values['velocity_type'])
+        self._battery: Subscription | None = None
+        self._listen_to_battery(values['nominal_voltage'])
         for name in unused_overrides(self):
             self.get_logger().warning(f'{name}: is for no topic of this node; it is ignored')
         self.create_service(SetBool, '~/enable', self._on_enable)
@@ -117,6 +121,16 @@ class ThrustAllocator(Node):
             subscribe(TwistWithCovarianceStamped, 'twist',
                       lambda message: self._on_twist(message.twist.twist))
 
+    def _listen_to_battery(self, nominal_voltage: float) -> None:
+        """Listen to it only if its voltage counts."""
+        if nominal_voltage and self._battery is None:
+            self._battery = self.create_subscription(
+                BatteryState, 'battery', self._on_battery, INPUT,
+                qos_overriding_options=OVERRIDABLE)
+        elif not nominal_voltage and self._battery is not None:
+            self.destroy_subscription(self._battery)
+            self._battery = None
+
     # Parameters
 
     def _check_change(self, changes: list[Parameter]) -> SetParametersResult:
@@ -140,6 +154,8 @@ class ThrustAllocator(Node):
             if value != before[name]:
                 self.get_logger().info(f'{name}: {shown(before[name])} -> {shown(value)}')
         self._outputs.publish_individually(values['publish_individual'])
+        if bool(values['nominal_voltage']) != bool(before['nominal_voltage']):
+            self._listen_to_battery(values['nominal_voltage'])  # which comes here again
         period = round(1e9 / values['rate'])  # [ns]
         if self._timer.timer_period_ns != period:
             self._timer.timer_period_ns = period
@@ -168,6 +184,10 @@ class ThrustAllocator(Node):
     def _on_current(self, message: Vector3Stamped) -> None:
         self._inputs.accept_current(
             vector_components(message.vector), message.header.frame_id, self._now())
+
+    def _on_battery(self, message: BatteryState) -> None:
+        self._inputs.accept_voltage(
+            message.voltage, self._now(), self._allocator.settings.rating)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and not self._enabled:
@@ -202,7 +222,7 @@ class ThrustAllocator(Node):
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
-        self._outputs.publish(tick, self.vehicle.thrusters)
+        self._outputs.publish(tick)
 
     def stop(self) -> None:
         """Publish zero setpoints for the last time and wait until they have been delivered."""

@@ -10,7 +10,6 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, Float64MultiArray
-from thrust_allocator.physics.vehicle import Thruster
 from thrust_allocator.ros.messages import array_message, fill_wrench
 from thrust_allocator.ros.qos import OUTPUT, OVERRIDABLE
 from thrust_allocator.setpoints import SETPOINTS
@@ -59,11 +58,11 @@ class Outputs:
                 publisher.publish(Float64())
         self._individually = on
 
-    def publish(self, tick: Tick, thrusters: Sequence[Thruster]) -> None:
-        """Publish one tick of these thrusters."""
+    def publish(self, tick: Tick) -> None:
+        """Publish one tick."""
         wanted = tick.thrusts.tolist()
         self._limits.data = array('d', tick.limits.tobytes())
-        self._setpoints.data = array('d', self._in_unit(wanted, thrusters, tick.flow))
+        self._setpoints.data = array('d', self._in_unit(wanted, tick.models, tick.flow))
         fill_wrench(self._achieved, tick.achieved)
         fill_wrench(self._unallocated, tick.unallocated)
         self._limits_publisher.publish(self._limits)
@@ -77,8 +76,8 @@ class Outputs:
             self._states.header.stamp = self._node.get_clock().now().to_msg()
             self._states.effort = array('d', wanted)
             self._states.position = array('d', [
-                one.model.deflection(thrust, *motion)
-                for one, thrust, motion in zip(thrusters, wanted, tick.flow)])
+                model.deflection(thrust, *motion)
+                for model, thrust, motion in zip(tick.models, wanted, tick.flow)])
             self._states_publisher.publish(self._states)
 
     def publish_zero_setpoints(self) -> None:

@@ -40,7 +40,7 @@ class Compromise:
         if keeping:
             weights = np.zeros(6)
             weights[list(dofs)] = np.array(vehicle.wrench_weights)[list(dofs)]
-            enabled = np.array([float(thruster.enabled) for thruster in vehicle.thrusters])
+            enabled = np.array([float(thruster.in_use) for thruster in vehicle.thrusters])
             self._scaled = weights > 0.0
             self._attainable = AttainableSet(vehicle.configuration_matrix, weights, enabled)
             self._cone = Cone(vehicle.configuration_matrix, weights,

@@ -16,22 +16,25 @@ class Constant(ThrusterModel):
     PLURAL = 'constant thrusters'
 
     bollard_thrust: Limits  # (reverse <= 0, forward >= 0) [N]
+    strength: float = 1.0  # T_0' / T_0 [-]
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Constant':
-        """Build it from checked values: `bollard_thrust`."""
-        return cls(values['bollard_thrust'])
+        """Build it from checked values: `bollard_thrust` and `effectiveness`."""
+        return cls(values['bollard_thrust'], values['effectiveness'])
 
     @cached_property
     def limits(self) -> LimitsLaw:
         """The Bollard limits, whatever the flow."""
-        bollard_thrust = self.bollard_thrust
-        return lambda *flow: bollard_thrust
+        reverse, forward = (self.strength * full for full in self.bollard_thrust)
+        both = reverse + 0.0, forward  # -0.0 + 0.0 is 0.0
+        return lambda *flow: both
 
     def thrust_in_flow(self, equivalent: float, *flow: float) -> float:
-        """Return what the driver was told."""
-        return equivalent
+        """Return what the driver was told, or what is left of it."""
+        return self.strength * equivalent
 
     def equivalent_in(self, *flow: float) -> Callable[[float], float]:
-        """Return a function that returns the thrust itself."""
-        return lambda thrust: thrust
+        """Return a function that returns the thrust itself, as if all of it were left."""
+        strength = self.strength
+        return lambda thrust: thrust / strength if thrust else thrust

@@ -33,6 +33,7 @@ class Fin(ThrusterModel):
     max_deflection: float  # [rad]
     cut_in_speed: float  # V_c, from which on the whole deflection is used [m/s]
     astern_share: float  # of the lift that is left when the flow comes from behind [-]
+    strength: float = 1.0  # share of the lift that damage leaves; the supply takes nothing [-]
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Fin':
@@ -41,7 +42,12 @@ class Fin(ThrusterModel):
         return cls(
             tuple((chord / math.hypot(*chord)).tolist()),
             lift_gain(values['water_density'], values['fin_area'], values['lift_slope']),
-            values['max_deflection'], values['cut_in_speed'], values['astern_share'])
+            values['max_deflection'], values['cut_in_speed'], values['astern_share'],
+            values['effectiveness'])
+
+    def at_supply(self, share: float) -> 'Fin':
+        """Return the fin itself."""
+        return self
 
     @property
     def bollard_thrust(self) -> Limits:
@@ -70,7 +76,7 @@ class Fin(ThrusterModel):
 
     def thrust_per_radian(self, along: float, chordwise: float, other: float = 0.0) -> float:
         """Return e = k V |V|, of that the astern share in a flow from behind [N/rad]."""
-        return self.gain * chordwise * abs(chordwise) * (
+        return self.strength * self.gain * chordwise * abs(chordwise) * (
             self.astern_share if chordwise < 0.0 else 1.0)
 
     def deflection(self, thrust: float, along: float, chordwise: float,

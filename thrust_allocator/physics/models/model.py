@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -20,7 +21,8 @@ class ThrusterModel(ABC):
 
     `flow` stands for the thruster's speed through the water along its thrust axis and along two
     axes across it [m/s]. The *Bollard-equivalent* of a thrust is what the same propeller speed
-    gives at rest: what a motor driver must be told that goes by a curve measured at rest. Kostenko
+    gives at rest, as new and at nominal voltage: what a motor driver must be told that goes by a
+    curve measured at rest. Kostenko
     and Tolstonogov (2017) give the loss at full speed only (eq. 3.11-3.13); that it is in
     proportion to the speed of rotation, so to the root of the equivalent, is ours.
     """
@@ -29,8 +31,17 @@ class ThrusterModel(ABC):
     PLURAL: ClassVar[str]  # several of them, in a picture's legend
     DEFLECTS: ClassVar[bool] = False  # whether it is a surface, told angles and rates of angles
 
-    bollard_thrust: Limits  # at rest [N]
+    bollard_thrust: Limits  # at rest, as new and at nominal voltage: T_0 [N]
+    strength: float  # share of that which wear and the supply leave: T_0' / T_0 [-]
     chord: Axis | None = None  # the first axis across; None: any two will do
+
+    def at_supply(self, share: float) -> 'ThrusterModel':
+        """
+        Return the model at another voltage of the supply.
+
+        :param share: of the thrust at rest that the voltage leaves, (V / V_0)^n [-].
+        """
+        return replace(self, strength=share * self.strength)
 
     @property
     def reference_limits(self) -> Limits:

@@ -22,7 +22,7 @@ class Propeller(ThrusterModel):
 
     Of the loss along its axis, C v + C_2 v^2, the part C v is in proportion to the speed of
     rotation; C_2, the curvature of the thrust coefficient over the advance ratio, does not depend
-    on it.
+    on it. The greatest speed of rotation goes with the root of T_0', and so do C and C_a.
     """
 
     NAME = 'propeller'
@@ -38,6 +38,7 @@ class Propeller(ThrusterModel):
     opposed_floor: float  # phi, share of Bollard thrust that opposed flow cannot take [-]
     speed_loss_quadratic: tuple[float, float] = (0.0, 0.0)  # C_2 (reverse, forward) [N*s^2/m^2]
     angle_law: str = 'paper'  # of ANGLE_LAWS
+    strength: float = 1.0  # T_0' / T_0 [-]
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Propeller':
@@ -50,7 +51,8 @@ class Propeller(ThrusterModel):
             values['bollard_thrust'], speed_loss, values['critical_angle_slope'],
             values['critical_angle_min'], values['second_critical_angle_offset'],
             values['second_critical_angle_slope'], values['opposed_loss'],
-            values['opposed_floor'], values['speed_loss_quadratic'], values['angle_law'])
+            values['opposed_floor'], values['speed_loss_quadratic'], values['angle_law'],
+            values['effectiveness'])
 
     @cached_property
     def limits(self) -> LimitsLaw:
@@ -62,12 +64,12 @@ class Propeller(ThrusterModel):
         law `cosine` the first one is pi/2. Continuous, never above Bollard thrust, never across
         zero; with the paper's law not monotone in speed.
         """
-        cosine = self.angle_law == 'cosine'
+        cosine, revolutions = self.angle_law == 'cosine', sqrt(self.strength)
         reverse, forward = (
-            _sense(bollard, axial, quadratic, opposed, self.opposed_floor, cosine)
-            for bollard, axial, quadratic, opposed
-            in zip((-self.bollard_thrust[0], self.bollard_thrust[1]), self.speed_loss,
-                   self.speed_loss_quadratic, self.opposed_loss))
+            _sense(self._full(side), revolutions * axial, quadratic, revolutions * opposed,
+                   self.opposed_floor, cosine)
+            for side, axial, quadratic, opposed
+            in zip((0, 1), self.speed_loss, self.speed_loss_quadratic, self.opposed_loss))
         first_slope, first_min = (0.0, HALF_PI) if cosine else (
             self.critical_angle_slope, self.critical_angle_min)
         second_start = HALF_PI + self.second_critical_angle_offset
@@ -86,32 +88,39 @@ class Propeller(ThrusterModel):
         return limits
 
     def thrust_in_flow(self, equivalent: float, *flow: float) -> float:
-        """Return e - dL_1 sqrt(e / T_0) - dL_2, see `_losses` [N]."""
+        """Return e - dL_1 sqrt(e / T_0') - dL_2, see `_losses`, for e T_0 / T_0' [N]."""
+        equivalent *= self.strength
         if equivalent == 0.0:
             return equivalent
         side, e = (1, equivalent) if equivalent > 0.0 else (0, -equivalent)
-        full = abs(self.bollard_thrust[side])
+        full = self._full(side)
         turning, steady = self._losses(side, flow)
         thrust = max(e - turning * sqrt(e / full) - steady, 0.0)
         return thrust if side else -thrust
 
     def equivalent_in(self, *flow: float) -> Callable[[float], float]:
         """Return the inverse of `thrust_in_flow`, the root of a quadratic in sqrt(e) [N]."""
-        sides = [(abs(full), *self._losses(side, flow))
-                 for side, full in enumerate(self.bollard_thrust)]
-        # tau + steady = e - 2 half sqrt(e)
-        laws = [(full, 0.5 * turning / sqrt(full) if full else 0.0, steady)
-                for full, turning, steady in sides]
+        laws = []
+        for side, bollard in enumerate(map(abs, self.bollard_thrust)):
+            full, (turning, steady) = self._full(side), self._losses(side, flow)
+            # tau + steady = e - 2 half sqrt(e)
+            laws.append((bollard, 0.5 * turning / sqrt(full) if full else 0.0, steady))
+        strength = self.strength
 
         def equivalent(thrust: float) -> float:
             if thrust == 0.0:
                 return thrust
             forward, tau = (1, thrust) if thrust > 0.0 else (0, -thrust)
-            full, half, steady = laws[forward]
-            e = min((half + sqrt(half * half + tau + steady))**2, full)  # rounding could exceed it
+            bollard, half, steady = laws[forward]
+            e = (half + sqrt(half * half + tau + steady))**2
+            e = min(e / strength, bollard)  # which rounding could exceed
             return e if forward else -e
 
         return equivalent
+
+    def _full(self, side: int) -> float:
+        """Return T_0' of one sense [N]."""
+        return self.strength * abs(self.bollard_thrust[side])
 
     def _losses(self, side: int, flow: tuple[float, ...]) -> tuple[float, float]:
         """
@@ -119,7 +128,7 @@ class Propeller(ThrusterModel):
 
         :return: dL_1 in proportion to the speed of rotation, dL_2 whatever it is: that of C_2.
         """
-        full = abs(self.bollard_thrust[side])
+        full = self._full(side)
         steady = full - abs(self._with_quadratic_alone.limits(*flow)[side]) \
             if self.speed_loss_quadratic[side] else 0.0
         return full - abs(self.limits(*flow)[side]) - steady, steady

@@ -20,17 +20,18 @@ class Tunnel(ThrusterModel):
     bollard_thrust: Limits  # T_0 (reverse <= 0, forward >= 0) [N]
     decay: float  # c; published values are 0.3 to 4 (Palmer et al. 2008) [-]
     jet_mass: float  # rho S, mass of a metre of the jet [kg/m]; only its product with c matters
+    strength: float = 1.0  # T_0' / T_0 [-]
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> 'Tunnel':
         """Build it from checked values, `bollard_thrust`, `decay`, `area` and `water_density`."""
         return cls(values['bollard_thrust'], values['decay'],
-                   values['water_density'] * values['area'])
+                   values['water_density'] * values['area'], values['effectiveness'])
 
     @cached_property
     def limits(self) -> LimitsLaw:
         """T_0 exp(-c v_t^2 / v_jet^2) (eq. 3.13), v_jet^2 = T_0 / (rho S) (eq. 3.12)."""
-        reverse, forward = self.bollard_thrust
+        reverse, forward = (self.strength * full for full in self.bollard_thrust)
 
         def limits(along: float, one: float, other: float = 0.0) -> Limits:
             load = self._load(one, other)
@@ -42,7 +43,8 @@ class Tunnel(ThrusterModel):
 
     def thrust_in_flow(self, equivalent: float, along: float, one: float,
                        other: float = 0.0) -> float:
-        """Return e exp(-c rho S v_t^2 / e) for an equivalent e, of its sign [N]."""
+        """Return e exp(-c rho S v_t^2 / e) for an equivalent e T_0 / T_0', of its sign [N]."""
+        equivalent *= self.strength
         if equivalent == 0.0:
             return equivalent
         return equivalent * exp(-self._load(one, other) / abs(equivalent))
@@ -52,6 +54,7 @@ class Tunnel(ThrusterModel):
         """Return the inverse of `thrust_in_flow`, by Wright's omega function [N]."""
         load = self._load(one, other)
         log_load = log(load) if load > 0.0 else 0.0
+        strength, bollard = self.strength, self.bollard_thrust
 
         def equivalent(thrust: float) -> float:
             if thrust == 0.0:
@@ -60,7 +63,7 @@ class Tunnel(ThrusterModel):
             # tau = e exp(-load / e): with y = load / e, y + ln y = ln(load / tau)
             y = float(wrightomega(log_load - log(tau)).real) if load > 0.0 else 0.0
             e = load / y if y > 1.0 else tau * exp(y)  # neither overflows nor divides by 0
-            e = min(e, abs(self.bollard_thrust[side]))  # which rounding could exceed
+            e = min(e / strength, abs(bollard[side]))  # which rounding could exceed
             return e if side else -e
 
         return equivalent

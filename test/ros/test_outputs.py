@@ -1,5 +1,6 @@
 """What goes out beside the arrays: names, units for motor drivers, topics per thruster."""
 
+from geometry_msgs.msg import Wrench
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 import pytest
@@ -10,6 +11,7 @@ from std_msgs.msg import Float64
 from support.peer import cruise
 from support.stepped_peer import is_stopped
 from support.vehicles import NAMES
+from thrust_allocator.ros.messages import fill_wrench
 
 WRENCH, TWIST = cruise(0.9, side=1.0)
 UNITS = ('newton', 'bollard_newton', 'bollard_fraction')
@@ -195,3 +197,12 @@ def test_no_joint_states_while_nobody_listens(stepped):
     one = stepped()
     one.steps(3, WRENCH, TWIST)
     assert len(one.node._outputs._states.effort) == 0
+
+
+def test_no_wrench_carries_a_negative_zero():
+    """What turning the axes makes of 0 goes out as 0.0, which reads as a stop ought to."""
+    message = Wrench()
+    fill_wrench(message, np.array([-0.0, 1.0, -0.0, 0.0, -2.0, -0.0]))
+    assert str(message.force) + str(message.torque) == (
+        'geometry_msgs.msg.Vector3(x=0.0, y=1.0, z=0.0)'
+        'geometry_msgs.msg.Vector3(x=0.0, y=-2.0, z=0.0)')

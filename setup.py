@@ -15,7 +15,7 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{package_name}']),
         (f'share/{package_name}', ['package.xml']),
         (f'share/{package_name}/config', glob('config/*.yaml')),
-        (f'lib/{package_name}', glob('executables/*')),  # where `ros2 run` looks for them
+        (f'lib/{package_name}', glob('resource/executables/*')),  # where `ros2 run` looks for them
     ],
     python_requires='>=3.10',
     # SciPy, whose matrices OSQP takes, and joblib come with osqp

@@ -79,12 +79,12 @@ def test_what_is_installed(monkeypatch):
     assert installed['entry_points'] == {
         'console_scripts': ['thrust_allocator = thrust_allocator.__main__:main']}
     files = dict(installed['data_files'])['lib/thrust_allocator']
-    assert sorted(files) == sorted(f'executables/{name}' for name in command.COMMANDS)
+    assert sorted(files) == sorted(f'resource/executables/{name}' for name in command.COMMANDS)
     assert all(os.access(file, os.X_OK) for file in files)
 
 
 @pytest.mark.parametrize('name', ['demo', 'study'])
 def test_an_executable_starts_its_program(name):
     """One small file, linked by the names of the programs, starts what it is called."""
-    done = run(ROOT / 'executables' / name, '--help', PYTHONPATH=str(ROOT))
+    done = run(ROOT / 'resource/executables' / name, '--help', PYTHONPATH=str(ROOT))
     assert (done.returncode, done.stderr) == (0, '') and done.stdout.startswith(f'usage: {name} ')

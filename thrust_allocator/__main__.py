@@ -29,6 +29,9 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     program, *rest = sys.argv if args is None else args
     name = 'node'
+    if rest[:1] in (['-h'], ['--help']):
+        print(f'thrust_allocator NAME [OPTION ...], NAME one of {", ".join(COMMANDS)}; without a '
+              'name, the node:\n')
     if rest and rest[0].isidentifier():
         name, *rest = rest
     if name not in COMMANDS:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.log import Log
 from support.vehicles import mt2012
 from thrust_allocator.diagnosis import allocation_figures, note_tick, Tally, thrusters_off
 from thrust_allocator.findings import Findings, Level
@@ -13,16 +14,6 @@ from thrust_allocator.tick import Allocator, Settings, Tick
 
 VEHICLE = mt2012()
 SECOND = 10**9  # [ns]
-
-
-class Log:
-    """A logger that keeps what it is given."""
-
-    def __init__(self):
-        self.lines = []
-
-    def __getattr__(self, level):
-        return lambda text: self.lines.append((level, text))
 
 
 def allocation(unallocated=(0.0,) * 6, achieved=(0.0,) * 6, at_bound=(0,) * 5,

@@ -1,18 +1,9 @@
 """Findings: when one begins, when it is over, and how often it is logged."""
 
+from support.log import Log
 from thrust_allocator.findings import Findings, Level
 
 SECOND = 10**9  # [ns]
-
-
-class Log:
-    """A logger that keeps what it is given."""
-
-    def __init__(self):
-        self.lines = []
-
-    def __getattr__(self, level):
-        return lambda text: self.lines.append((level, text))
 
 
 def run(noted, seconds=60, step=SECOND // 10):

@@ -11,6 +11,11 @@ TICKS = 1500
 RULES = ['fallback_velocity:=[0.5, 0.0, 0.1]', 'thrusters.up.max_rate:=200.0',
          'thrusters.left.max_rate:=20.0', 'thrusters.tunnel.max_rate:=1000.0',
          'thrusters.tunnel.cutoff:=0.1', 'thrusters.right.cutoff:=0.7']
+POWER_LIMIT = 200.0  # [W]
+GIVING_WAY = [Parameter('direction_keeping', value=1.0),
+              Parameter('power_limit', value=POWER_LIMIT), *(
+                  Parameter(f'thrusters.{name}.bollard_power', value=[100.0, 200.0])
+                  for name in NAMES)]
 NONSENSE = [np.nan, np.inf, -np.inf, 1e308, -1e308, 1.1e9]
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 
@@ -122,9 +127,16 @@ def test_fault_campaign(stepped):
     """Through thousands of ticks of faults each is sound, none is left out, and all ends well."""
     peer = stepped('message_frame:=flu', *RULES)
     campaign = Campaign(peer, seed=20170923)
-    reports = Counter()
+    reports, limited, kept = Counter(), 0, 0
     for number in range(TICKS):
+        if number == TICKS // 2:  # from here on with what gives way beyond reach
+            assert peer.node.set_parameters_atomically(GIVING_WAY).successful
         campaign.tick()
+        allocation = peer.node._last_tick.allocation
+        if number >= TICKS // 2 and allocation is not None:
+            assert allocation.power <= POWER_LIMIT and allocation.solved
+            limited += allocation.power_scale < 1.0
+            kept += allocation.direction_scale < 1.0
         if number % 50 == 49:
             level, _, figures = peer.report()
             reports[level] += 1
@@ -135,6 +147,7 @@ def test_fault_campaign(stepped):
     print(f'\n{dict(counts)}, reports {dict(reports)}, {dropped}')
     assert counts['ticks'] == TICKS == peer.ticks_seen
     assert counts['ticks that allocated'] > TICKS / 3 and all(counts.values())
+    assert limited > TICKS / 20 and kept > TICKS / 20
     assert sum(dropped.values()) == sum(
         count for key, count in counts.items() if key.startswith('nonsense'))
 

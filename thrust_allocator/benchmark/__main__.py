@@ -8,7 +8,7 @@ from pathlib import Path
 import platform
 import sys
 
-from thrust_allocator.benchmark import growth, node_cost, saturation, solvers
+from thrust_allocator.benchmark import giving_way_cost, growth, node_cost, saturation, solvers
 
 PARTS = ('solvers', 'growth', 'saturation', 'node')
 PACKAGES = ('numpy', 'osqp', 'scipy', 'quadprog', 'daqp', 'casadi', 'ros-jazzy-rclpy')
@@ -74,6 +74,7 @@ def main(args: Sequence[str] | None = None) -> int:
         growth.report(*((300, 1) if options.quick else ()), plot=options.plot)
     if 'saturation' in parts:
         saturation.report(*((1000,) if options.quick else ()))
+        giving_way_cost.report(*((1,) if options.quick else ()))
     if 'node' in parts:
         node_cost.report(options.quick)
     return 0

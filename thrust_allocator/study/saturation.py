@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from thrust_allocator.markdown import table
+from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.attainable import TooManyFaces
 from thrust_allocator.solve.authority import authority
@@ -33,7 +34,7 @@ def reach_of(vehicle: Vehicle) -> np.ndarray:
 
 def _limits(vehicle: Vehicle) -> np.ndarray:
     """Return the limits at rest, (2, p), 0 where a thruster is out of use [N]."""
-    return vehicle.bollard_thrust * [thruster.enabled for thruster in vehicle.thrusters]
+    return ThrustBounds(vehicle)(np.zeros(6))
 
 
 def saturation(vehicle: Vehicle, reach: np.ndarray, count: int, seed: int = 0) -> Saturation:

@@ -1,5 +1,7 @@
 """What gives way, in the running node: direction, power, weights, and what could still be asked."""
 
+import json
+
 import numpy as np
 from numpy.testing import assert_allclose
 import pytest
@@ -131,3 +133,21 @@ def test_wrench_limits_of_a_dof_that_is_not_controlled(stepped):
     for dof in (1, 3):
         assert lower[dof] == upper[dof] == pytest.approx(tick['achieved_wrench'][dof], abs=1e-9)
     assert (lower[[0, 4, 5]] < upper[[0, 4, 5]] - 1.0).all()
+
+
+def test_no_wrench_limits_of_a_vehicle_with_too_many_faces(stepped, tmp_path):
+    """One WARN says so, and the vehicle is allocated all the same."""
+    rng = np.random.default_rng(3)
+    thrusters = {f't{i}': {
+        'model': 'constant', 'position': rng.normal(size=3).tolist(),
+        'direction': rng.normal(size=3).tolist(), 'bollard_thrust': [-10.0, 10.0]}
+        for i in range(16)}
+    path = tmp_path / 'many.yaml'
+    path.write_text(json.dumps({'/**': {'ros__parameters': {  # also YAML
+        'thruster_names': list(thrusters), 'thrusters': thrusters}}}), encoding='utf-8')
+    peer = stepped(file=path)
+    received = []
+    peer.create_subscription(Float64MultiArray, 'wrench_limits', received.append, 10)
+    peer.steps(3, [10.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0] * 6)
+    peer.wait_until(lambda: peer.logged('no wrench_limits'), 'the warning')
+    assert not received and len(peer.logged('no wrench_limits')) == 1

@@ -10,6 +10,7 @@ from thrust_allocator.replay.run import Event, Run
 MANY = 5.0  # usual intervals without a message, from which on that is a gap
 SHORTEST = 0.2  # and the shortest time that is one [s]
 ALIKE = 0.005  # share of Bollard thrust that recorded and recomputed setpoints may be apart
+SAG = 0.03  # share of the first voltage that a battery may fall without a word
 STARTING = 500 * 10**6  # [ns], in which a node may not be connected to all of its topics yet
 FEEDS = ('cmd_wrench', 'odom', 'twist', 'current', 'battery')
 
@@ -25,7 +26,7 @@ def happenings(run: Run, arrivals: Arrivals, end: int) -> list[Event]:
               for start, seconds in _spans(times, ~ticks['solved'])]
     found += [Event(run.start, f'thruster {one.name} is off')
               for one in run.first.vehicle.thrusters if not one.enabled]
-    return sorted(found)
+    return sorted([*found, *_sag(run)])
 
 
 def _gaps(run: Run, arrivals: Arrivals, end: int) -> Iterator[Event]:
@@ -49,6 +50,21 @@ def _gaps(run: Run, arrivals: Arrivals, end: int) -> Iterator[Event]:
                 if within.any():
                     text += f': {effect} at {int(within.sum())} ticks'
             yield Event(int(moments[i]), text)
+
+
+def _sag(run: Run) -> Iterator[Event]:
+    """Yield how far the battery fell, when, and what that leaves of the thrust."""
+    known = [(time, voltage) for time, voltage in run.voltages if 0.0 < voltage < np.inf]
+    if not known:
+        return
+    time, lowest = min(known, key=lambda one: one[1])
+    if lowest > (1.0 - SAG) * known[0][1]:
+        return
+    values = run.description.parameters.values
+    nominal, exponent = values['nominal_voltage'], values['voltage_exponent']
+    effect = (f'{(lowest / nominal)**exponent:.0%} of the thrust at nominal_voltage' if nominal else
+              'not considered, for nominal_voltage is 0')
+    yield Event(time, f'battery down from {known[0][1]:.1f} to {lowest:.1f} V: {effect}')
 
 
 def _spans(times: np.ndarray, flags: np.ndarray) -> list[tuple[int, float]]:

@@ -47,6 +47,7 @@ class Run:
         self._allocator = Allocator.of(description)
         self._schedule = None if as_recorded else Schedule(description.parameters.values, start)
         self._enabled = description.parameters.values['start_enabled']
+        self._has_fins = any(one.model.DEFLECTS for one in description.vehicle.thrusters)
         self._velocity = ('odom' if description.parameters.values['velocity_type'] == 'odometry'
                           else 'twist')
         self.ticks = Ticks(len(description.vehicle.thrusters))
@@ -54,6 +55,7 @@ class Run:
         # Power (e / T0)^1.5 of all thrusters, e of Bollard-equivalent thrust, and when [ns, -]
         self.power: list[tuple[int, float]] = []
         self._sampled = -SAMPLE
+        self.voltages: list[tuple[int, float]] = []  # of the supply, when received [ns, V]
         self._waiting: deque[Message] = deque()  # for the tick whose setpoints come next
         self._known_dropped: Counter[str] = Counter()
 
@@ -104,6 +106,10 @@ class Run:
                                    content.orientation)
         elif message.name == 'current' and self._velocity == 'odom':
             inputs.accept_current(content.velocity, content.frame, now)
+        elif message.name == 'battery':
+            self.voltages.append((now, content))
+            if self._allocator.settings.rating.nominal_voltage:
+                inputs.accept_voltage(content, now, self._allocator.settings.rating)
         elif message.name == 'battery' and self._allocator.settings.rating.nominal_voltage:
             inputs.accept_voltage(content, now, self._allocator.settings.rating)
         if inputs.dropped != self._known_dropped:
@@ -153,7 +159,8 @@ class Run:
         unit = self.description.parameters.values['setpoint_unit']
         setpoints = SETPOINTS[unit](thrusts, tick.models, tick.flow)
         deflections = [model.deflection(thrust, *motion) if model.DEFLECTS else 0.0
-                       for thrust, model, motion in zip(thrusts, tick.models, tick.flow)]
+                       for thrust, model, motion in zip(thrusts, tick.models, tick.flow)
+                       ] if self._has_fins else None
         if time >= self._sampled + SAMPLE:
             fractions = SETPOINTS['bollard_fraction'](thrusts, tick.models, tick.flow)
             self.power.append((time, sum(
@@ -163,5 +170,4 @@ class Run:
         velocity = tick.motion.twist
         if velocity is None:
             velocity = (*self._allocator.settings.fallback_velocity, 0.0, 0.0, 0.0)
-        self.ticks.add(time, tick, velocity, setpoints, deflections, recorded,
-                       stopped)
+        self.ticks.add(time, tick, velocity, setpoints, deflections, recorded, stopped)

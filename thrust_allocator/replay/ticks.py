@@ -1,64 +1,77 @@
 """The ticks of a run as columns of numbers."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from thrust_allocator.tick import Tick
 
-_CHUNK = 8192  # rows
+_CHUNK = 4096  # rows
+_FLAGS = ('live', 'solved', 'stale', 'stopped')
+
+
+class _Row(NamedTuple):
+    """What is kept of a tick; p thrusters, wrenches in the messages' axes."""
+
+    times: int  # [ns]
+    thrusts: np.ndarray  # (p,) [N]
+    lower: np.ndarray  # (p,) [N]
+    upper: np.ndarray
+    setpoints: Sequence[float]  # (p,), in the unit of the topic
+    recorded: np.ndarray  # (p,), likewise; NaN where there is none
+    deflections: Sequence[float]  # (p,), of fins; 0 of thrusters [rad]
+    at_bound: np.ndarray  # (p,), as in `Allocation`
+    wrench: np.ndarray  # (6,) [N, N*m]
+    achieved: np.ndarray
+    unallocated: np.ndarray
+    velocity: np.ndarray  # through the water, (6,) [m/s, rad/s]
+    live: bool  # a wrench counts and the vehicle is enabled
+    solved: bool
+    stale: bool  # the velocity counts no more
+    stopped: bool  # only because the recorded node was
 
 
 class Ticks:
-    """Row after row of what the ticks decided; p thrusters, wrenches in the messages' axes."""
+    """Row after row of what the ticks decided, held in arrays."""
 
     def __init__(self, p: int) -> None:
-        """Start with no ticks."""
-        sizes = {'thrusts': p, 'lower': p, 'upper': p, 'setpoints': p, 'recorded': p,
-                 'deflections': p, 'at_bound': p, 'wrench': 6, 'achieved': 6, 'unallocated': 6,
-                 'velocity': 6, 'live': 1, 'solved': 1, 'stale': 1, 'stopped': 1}
-        ends = np.cumsum(list(sizes.values())).tolist()
-        self._columns = {name: slice(end - size, end)
-                         for (name, size), end in zip(sizes.items(), ends)}
-        self._chunks = [np.empty((_CHUNK, ends[-1]))]
-        self._times: list[int] = []
+        """Start with no ticks of p thrusters."""
+        self._rows: list[_Row] = []  # those that no chunk has yet
+        self._chunks: list[dict[str, np.ndarray]] = []
+        self._zeros, self._none, self._no_wrench = np.zeros(p), np.full(p, np.nan), np.zeros(6)
 
     def __len__(self) -> int:
-        return len(self._times)
+        return _CHUNK * len(self._chunks) + len(self._rows)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return a column of `_Row` over all ticks: (n,), (n, p) or (n, 6)."""
+        return np.concatenate([chunk[name] for chunk in self._chunks]
+                              + ([_column(name, self._rows)] if self._rows else []))
 
     @property
     def times(self) -> np.ndarray:
         """Return the time of each tick, (n,) [ns]."""
-        return np.array(self._times, dtype=np.int64)
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """
-        Return a column over all ticks, (n, p) or (n, 6); flags are (n,).
-
-        thrusts, lower, upper [N]; setpoints and recorded, in the unit of the topic (recorded is
-        NaN where there is none); deflections of fins, 0 of thrusters [rad]; at_bound as in
-        `Allocation`; wrench, achieved, unallocated [N, N*m]; velocity through the water [m/s,
-        rad/s]; live: a wrench counts and the vehicle is enabled; solved; stale: the velocity
-        counts no more; stopped: only because the recorded node was.
-        """
-        columns = self._columns[name]
-        rows = np.concatenate([chunk[:, columns] for chunk in self._chunks])[:len(self)]
-        return rows[:, 0] > 0.5 if name in ('live', 'solved', 'stale', 'stopped') else rows
+        return self['times']
 
     def add(self, time: int, tick: Tick, velocity: np.ndarray, setpoints: Sequence[float],
-            deflections: Sequence[float], recorded: np.ndarray | None, stopped: bool) -> None:
+            deflections: Sequence[float] | None, recorded: np.ndarray | None,
+            stopped: bool) -> None:
         """Add a tick; `recorded` are the setpoints that were published at its time."""
-        index = len(self) % _CHUNK
-        if index == 0 and len(self):
-            self._chunks.append(np.empty_like(self._chunks[0]))
-        p = len(tick.thrusts)
         allocation = tick.allocation
-        if recorded is None or len(recorded) != p:
-            recorded = np.full(p, np.nan)
-        self._chunks[-1][index] = np.concatenate([
-            tick.thrusts, tick.limits[0], tick.limits[1], setpoints, recorded, deflections,
-            np.zeros(p) if allocation is None else allocation.at_bound,
-            np.zeros(6) if tick.wrench is None else tick.wrench,
-            tick.achieved, tick.unallocated, velocity,
-            [allocation is not None, allocation is None or allocation.solved, tick.motion.stale,
-             stopped]])
-        self._times.append(time)
+        if recorded is None or len(recorded) != len(tick.thrusts):
+            recorded = self._none
+        self._rows.append(_Row(
+            time, tick.thrusts, tick.limits[0], tick.limits[1], setpoints, recorded,
+            self._zeros if deflections is None else deflections,
+            self._zeros if allocation is None else allocation.at_bound,
+            self._no_wrench if tick.wrench is None else tick.wrench,
+            tick.achieved, tick.unallocated, velocity, allocation is not None,
+            allocation is None or allocation.solved, tick.motion.stale, stopped))
+        if len(self._rows) == _CHUNK:
+            self._chunks.append({name: _column(name, self._rows) for name in _Row._fields})
+            self._rows = []
+
+
+def _column(name: str, rows: Sequence[_Row]) -> np.ndarray:
+    kind = np.int64 if name == 'times' else bool if name in _FLAGS else float
+    return np.array([getattr(row, name) for row in rows], dtype=kind)

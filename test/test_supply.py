@@ -8,6 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pytest
 from support.vehicles import described, mt2012
 from thrust_allocator.inputs import Inputs
+from thrust_allocator.parameters.build import describe
+from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.supply import Rating
 from thrust_allocator.tick import Allocator, Settings
@@ -142,15 +144,19 @@ def test_sag_does_not_swing(unit, period):
     assert late[-1] - lowest < 0.1 * (forward[0] - late[-1])
 
 
-def test_no_effectiveness_is_off():
+@pytest.mark.parametrize('keeping', [0.0, 1.0])
+def test_no_effectiveness_is_off(keeping):
     """0 is `enabled: false` in all that a tick decides, to the bit."""
     rng = np.random.default_rng(3)
-    gone = Allocator(mt2012(thrusters__left__effectiveness=0.0), SETTINGS)
-    off = Allocator(mt2012(thrusters__left__enabled=False), SETTINGS)
-    for i in range(200):
+    given = read_parameter_file(default_parameter_file()) | {
+        'direction_keeping': keeping, 'direction_keeping_dofs': ['surge', 'pitch', 'yaw']}
+    gone = Allocator.of(describe(given | {'thrusters.left.effectiveness': 0.0}))
+    off = Allocator.of(describe(given | {'thrusters.left.enabled': False}))
+    for i in range(100):
         inputs = Inputs()
         inputs.accept_wrench(rng.normal(size=6) * 100.0, i)
         inputs.accept_velocity(rng.normal(size=6), i, 'odom')
         one, other = gone.tick(inputs, i), off.tick(inputs, i)
         for name in ('limits', 'thrusts', 'achieved', 'unallocated'):
             assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+        assert gone.wrench_limits(one).tobytes() == off.wrench_limits(other).tobytes()

@@ -9,6 +9,7 @@ import pytest
 from support.vehicles import fin, limits_of, mt2012, propeller, thruster
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.models import Constant, Tunnel
+from thrust_allocator.physics.power import PredictedPower
 
 BOLLARD = st.tuples(st.floats(-500.0, -1.0), st.floats(1.0, 500.0))
 PAIR = st.tuples(st.floats(0.0, 60.0), st.floats(0.0, 60.0))
@@ -111,3 +112,15 @@ def test_set_supply_and_back():
     assert bounds(np.zeros(6)) == pytest.approx(0.5 * vehicle.bollard_thrust)
     bounds.set_supply(1.0)
     assert (bounds(velocity) == before).all()
+
+
+def test_power_is_counted_without_the_battery():
+    """At full throttle a worn thruster takes all of its power, a low voltage its share^1.5."""
+    one = replace(thruster(model=propeller(strength=0.6)), bollard_power=(300.0, 400.0))
+    flow = [(0.8, 0.1, 0.0)]
+    for supply in (1.0, 0.7):
+        model = one.model.at_supply(supply)
+        power = PredictedPower([one]).in_flow(flow, [model], supply)
+        for side, full in enumerate((300.0, 400.0)):
+            assert power(np.array([model.limits(*flow[0])[side]])) == pytest.approx(
+                full * supply**1.5, rel=1e-9)

@@ -4,18 +4,21 @@ from collections import Counter
 
 import numpy as np
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import BatteryState
 from support.stepped_peer import inside_limits, is_stopped, SECOND
-from support.vehicles import NAMES
+from support.vehicles import NAMES as THRUSTERS, RUDDER
 
 TICKS = 1500
+NAMES = [*THRUSTERS, 'rudder']
 RULES = ['fallback_velocity:=[0.5, 0.0, 0.1]', 'thrusters.up.max_rate:=200.0',
          'thrusters.left.max_rate:=20.0', 'thrusters.tunnel.max_rate:=1000.0',
-         'thrusters.tunnel.cutoff:=0.1', 'thrusters.right.cutoff:=0.7']
+         'thrusters.tunnel.cutoff:=0.1', 'thrusters.right.cutoff:=0.7', 'nominal_voltage:=16.0']
+HIGHEST = 17.0  # of the battery [V]
 POWER_LIMIT = 200.0  # [W]
 GIVING_WAY = [Parameter('direction_keeping', value=1.0),
               Parameter('power_limit', value=POWER_LIMIT), *(
                   Parameter(f'thrusters.{name}.bollard_power', value=[100.0, 200.0])
-                  for name in NAMES)]
+                  for name in THRUSTERS)]
 NONSENSE = [np.nan, np.inf, -np.inf, 1e308, -1e308, 1.1e9]
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 
@@ -29,6 +32,7 @@ class Campaign:
         self.counts = Counter()
         self.enabled = True
         self.off = set()  # indices of thrusters
+        self.battery = peer.create_publisher(BatteryState, 'battery', 1)
 
     def happens(self, what, probability):
         """Tell whether something happens in this tick, and count it."""
@@ -46,7 +50,7 @@ class Campaign:
         """Start, change or stop the streams of messages."""
         peer, random = self.peer, self.random
         if self.happens('new wrenches', 0.1):
-            reverse, forward = peer.node.vehicle.bollard_thrust
+            reverse, forward = peer.node.vehicle.reference_limits
             reachable = peer.node.vehicle.configuration_matrix @ random.uniform(reverse, forward)
             peer.wrench = FLU * reachable * random.uniform(0.0, 10.0)
         if self.happens('new twists', 0.1):
@@ -67,6 +71,13 @@ class Campaign:
             peer.silence('current')
             peer.send_current(np.ones(3), frame='map')
 
+        if self.happens('voltages', 0.05):
+            self.battery.publish(BatteryState(voltage=random.uniform(9.0, HIGHEST)))
+        # Not so late that the report that counts them could come before it
+        if self.counts['ticks'] % 50 < 40 and self.happens('nonsense for battery', 0.03):
+            self.battery.publish(BatteryState(
+                voltage=float(random.choice([0.0, -1.0, 33.0, np.nan, np.inf]))))
+
     def step(self, period):
         """Let a tick pass, in which messages may be nonsense, and return it."""
         peer, kept = self.peer, {}
@@ -83,10 +94,14 @@ class Campaign:
     def switch(self):
         """Switch thrusters and the node off and on."""
         if self.happens('thrusters switched', 0.04):
-            index = int(self.random.integers(5))
+            index = int(self.random.integers(6))
             self.off ^= {index}
             self.peer.node.set_parameters([Parameter(
                 f'thrusters.{NAMES[index]}.enabled', value=index not in self.off)])
+        if self.happens('wear', 0.03):
+            left = float(self.random.choice([0.0, 1.0, self.random.random()]))
+            self.peer.node.set_parameters([Parameter(
+                f'thrusters.{self.random.choice(NAMES)}.effectiveness', value=left)])
         if self.happens('refused changes', 0.01):
             result, = self.peer.node.set_parameters([Parameter('thrusters.up.enabled', value=2)])
             assert not result.successful
@@ -110,9 +125,9 @@ class Campaign:
         tick = self.step(self.period())
         assert inside_limits(tick), tick
         assert all(np.isfinite(values).all() for values in tick.values())
-        limits = tick['thrust_limits'].reshape(2, 5)
-        bollard = self.peer.node.vehicle.bollard_thrust
-        assert (bollard[0] <= limits[0]).all() and (limits[1] <= bollard[1]).all()
+        limits = tick['thrust_limits'].reshape(2, 6)
+        most = (HIGHEST / 16.0)**1.2 * self.peer.node.vehicle.bollard_thrust[:, :5]
+        assert (most[0] <= limits[0, :5]).all() and (limits[1, :5] <= most[1]).all()
         assert not limits[:, list(self.off)].any()
         assert self.enabled or is_stopped(tick)
         np.testing.assert_allclose(
@@ -123,9 +138,9 @@ class Campaign:
         self.counts['setpoints at a limit'] += int((tick['thruster_setpoints'] == limits).sum())
 
 
-def test_fault_campaign(stepped):
+def test_fault_campaign(stepped, variant):
     """Through thousands of ticks of faults each is sound, none is left out, and all ends well."""
-    peer = stepped('message_frame:=flu', *RULES)
+    peer = stepped('message_frame:=flu', *RULES, file=variant(RUDDER))
     campaign = Campaign(peer, seed=20170923)
     reports, limited, kept = Counter(), 0, 0
     for number in range(TICKS):
@@ -153,6 +168,8 @@ def test_fault_campaign(stepped):
 
     peer.enable(True)
     peer.switch(**dict.fromkeys(NAMES, True))
+    peer.node.set_parameters([Parameter('nominal_voltage', value=0.0), *(
+        Parameter(f'thrusters.{name}.effectiveness', value=1.0) for name in NAMES)])
     peer.current, peer.orientation = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]
     last = peer.steps(300, [30.0, 0.0, 0.0, 0.0, 0.0, 5.0], [0.0] * 6)[-1]
     peer.report()

@@ -8,7 +8,9 @@ from numpy.testing import assert_allclose
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import BatteryState
 from support.stepped_peer import inside_limits
+from support.vehicles import RUDDER
 from thrust_allocator.parameters.build import describe
 from thrust_allocator.parameters.file import is_of_every_node
 from thrust_allocator.physics.bounds import ThrustBounds
@@ -41,6 +43,12 @@ def good(random):
         {propeller + 'opposed_loss': [uniform(0.0, 50.0)] * 2},
         {propeller + 'opposed_floor': uniform(0.0, 1.0)},
         {tunnel + 'area': uniform(0.01, 0.2), tunnel + 'decay': uniform(0.0, 9.0)},
+        {one + 'effectiveness': uniform(0.0, 1.0)},
+        {'thrusters.rudder.fin_area': uniform(1e-3, 0.1), 'thrusters.rudder.cut_in_speed': 0.3},
+        {'thrusters.rudder.max_deflection': uniform(0.1, 1.0)},
+        {'thrusters.rudder.enabled': bool(random.random() < 0.7)},
+        {'nominal_voltage': random.choice([0.0, 16.0]), 'voltage_exponent': uniform(0.0, 3.0)},
+        {'wrench_origin': uniform(-0.1, 0.1, 3).tolist()},
         {'rate': uniform(45.0, 55.0)}, {'water_density': uniform(900.0, 1100.0)},
         {f'wrench_weights.{random.choice(["surge", "heave", "yaw"])}': 10.0**uniform(0.0, 5.0)},
         {'wrench_weights.pitch': '1.0e4', 'wrench_timeout': uniform(0.3, 1.0)},
@@ -57,6 +65,7 @@ def bad(random):
         {'thrusters.up.weight': 0.0}, {'thrusters.up.weight': 1e-300}, {'rte': 1.0},
         {'thrusters.up.bollard_thrust': [1.0, -1.0]}, {'thrusters.up.enabled': 1},
         {'thrusters.up.opposed_floor': float('nan')}, {'thrusters.tunnel.speed_loss': [1.0, 1.0]},
+        {'thrusters.rudder.chord': [0.0, 0.0, 1.0]}, {'thrusters.up.effectiveness': 1.1},
         {'thrusters.up.position': [0.0, 0.0, 0.0]}, {'message_frame': 'frd'},
         {'use_sim_time': True}, {'thruster_names': ['up']}, {'wrench_timeout': None},
         {f'wrench_weights.{dof}': 0.0 for dof in DOFS})
@@ -70,6 +79,7 @@ class Storm:
     def __init__(self, peer):
         """Begin."""
         self.peer, self.random = peer, np.random.default_rng(6)
+        self._battery = peer.create_publisher(BatteryState, 'battery', 1)
         self.sent = []  # (change, whether it is valid, the answer to come)
         self._each = peer.create_client(SetParameters, 'thrust_allocator/set_parameters')
         self._all = peer.create_client(
@@ -82,6 +92,7 @@ class Storm:
     def blow(self):
         """Send one of each."""
         self.peer.send_wrench(self.random.uniform(-300.0, 300.0, 6))
+        self._battery.publish(BatteryState(voltage=self.random.uniform(12.0, 17.0)))
         self.peer.send_twist(self.random.uniform(-1.5, 1.5, 6))
         count = len(self.sent)
         if count == CHANGES:
@@ -101,9 +112,9 @@ class Storm:
         return len(self.sent) == CHANGES and all(answer.done() for _, _, answer in self.sent)
 
 
-def test_storm(start):
+def test_storm(start, variant):
     """1,000 changes, half invalid, at 100 Hz: right answers, setpoints inside, a healthy end."""
-    node, peer = start()
+    node, peer = start(file=variant(RUDDER))
     statuses = []
     peer.create_subscription(DiagnosticArray, '/diagnostics', statuses.append, 100)
     peer.on_tick = lambda: None
@@ -123,7 +134,8 @@ def test_storm(start):
 
     # The end: what stands in the parameters is what the node does
     assert all(result.successful for result in node.set_parameters([
-        Parameter('wrench_timeout', value=10.0), Parameter('thrusters.up.enabled', value=True)]))
+        Parameter('wrench_timeout', value=10.0), Parameter('nominal_voltage', value=0.0),
+        Parameter('thrusters.up.enabled', value=True)]))
     peer.on_tick = peer.send
     tick = peer.settle(WRENCH, TWIST)
     vehicle = describe({

@@ -24,6 +24,11 @@ PAPER_TEST = (
 )
 NAMES = ['down', 'left', 'up', 'right', 'tunnel']  # of MT-2012
 HEAVE, PITCH = 2, 4
+RUDDER = {  # a fin for MT-2012, as a change of its file
+    'thruster_names': [*NAMES, 'rudder'], 'thrusters.rudder': {
+        'model': 'fin', 'position': [-1.9, 0.0, 0.0], 'direction': [0.0, 1.0, 0.0],
+        'chord': [1.0, 0.0, 0.0], 'fin_area': 0.02, 'lift_slope': 3.0, 'max_deflection': 0.5,
+        'cut_in_speed': 0.5, 'astern_share': 0.3, 'max_rate': 1.0, 'weight': 0.1}}
 
 
 def described(name: str) -> Vehicle:

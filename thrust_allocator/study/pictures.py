@@ -32,14 +32,15 @@ def _dots(dof: int) -> str:
 
 
 def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep,
-                    shares: dict[str, np.ndarray], dof: int) -> None:
-    """Draw each thruster's thrust inside its moving bounds, and who gives what share of a DOF."""
+                    shares: dict[int, dict[str, np.ndarray]]) -> None:
+    """Draw each thruster's thrust inside its moving bounds, and who gives what share of DOFs."""
     columns = 3
-    used = len(vehicle.thrusters) + 1
+    used = len(vehicle.thrusters) + len(shares)
     rows = -(-used // columns)
     moving = list(ALLOCATORS).index('moving bounds')
     thrust = {'color': '#000000', 'linestyle': '-'}
-    styles = {name: line(i + 1) for i, name in enumerate(shares)}
+    names = dict.fromkeys(name for who in shares.values() for name in who)
+    styles = {name: line(i + 1) for i, name in enumerate(names)}
     legend = [Line2D([], [], label='thrust', **thrust),
               Patch(color=BOUNDS, label='moving bounds')]
     legend += [Line2D([], [], label=name, **style) for name, style in styles.items()]
@@ -52,10 +53,10 @@ def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], alloc
             one.plot(speeds, allocation.thrusts[:, moving, i], **thrust)
             over_speed(one, speeds, thruster.name, 'thrust (N)')
             one.set_ylim(-largest, largest)
-        last = axes.ravel()[used - 1]
-        for name, share in shares.items():
-            last.plot(speeds, share, **styles[name])
-        over_speed(last, speeds, f'share of {DOFS[dof]}', 'share (%)')
+        for one, (dof, who) in zip(axes.ravel()[len(vehicle.thrusters):], shares.items()):
+            for name, share in who.items():
+                one.plot(speeds, share, **styles[name])
+            over_speed(one, speeds, f'share of {DOFS[dof]}', 'share (%)')
         finish(axes, used, SPEED)
         save(figure, path)
 
@@ -175,4 +176,17 @@ def draw_candidates(path: Path, speeds: Sequence[float], dofs: Sequence[int],
                     one.plot(speeds, values[:, dof], **{**line(i), **width})
             over_speed(one, speeds, DOFS[dof], f'{DOFS[dof]} ({_dots(dof)})')
         finish(axes, len(dofs), SPEED)
+        save(figure, path)
+
+
+def draw_stages(path: Path, title: str, speeds: Sequence[float],
+                found: dict[str, np.ndarray]) -> None:
+    """Draw a limit after each of the stages that move it, (n,) by name, over speed."""
+    legend = [Line2D([], [], label=name, **line(i)) for i, name in enumerate(found)]
+    with look():
+        figure, axes = panels(1, 1, 3.6, title, legend)
+        for i, limit in enumerate(found.values()):
+            axes[0, 0].plot(speeds, limit, **line(i))
+        over_speed(axes[0, 0], speeds, '', 'upper limit (N)')
+        finish(axes, 1, SPEED)
         save(figure, path)

@@ -49,12 +49,12 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
     """
     case, outcome = cases[0], outcomes[0]
     vehicle, allocation = without(case.vehicle, case.failed), outcome.allocation
-    dof = main_dof(manoeuvre, case)
-    who = shares(vehicle, allocation.thrusts[:, list(ALLOCATORS).index('moving bounds')], dof)
+    moving = allocation.thrusts[:, list(ALLOCATORS).index('moving bounds')]
+    who = {dof: shares(vehicle, moving, dof) for dof in main_dofs(manoeuvre, case)}
     tables.write_allocation(folder / 'allocation_against_speed.csv', vehicle, speeds, allocation,
-                            who, dof)
+                            who)
     drawings.add(pictures.draw_allocation, folder / 'allocation_against_speed', vehicle, speeds,
-                 allocation, who, dof)
+                 allocation, who)
     tables.write_worth(folder / 'worth.csv', speeds, allocation)
     drawings.add(pictures.draw_worth, folder / 'worth', vehicle, speeds, allocation)
     tables.write_authority(folder / 'authority.csv', speeds, cases, outcomes)
@@ -72,7 +72,7 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
         f'## {case.layout}{state}, heading {case.heading:g}° to the current', '',
         *_figure(within, 'allocation_against_speed', 'Allocation against speed',
                  'The thrusts that the allocator with moving bounds asks for, inside those bounds, '
-                 f'and who gives what share of the {DOFS[dof]}.'),
+                 f'and who gives what share of the {" and the ".join(DOFS[dof] for dof in who)}.'),
         *_figure(within, 'worth', 'What moving bounds are worth',
                  'What the vehicle gets beyond or short of the command when the thrusts of each '
                  'allocator are passed through the thrust that is really available at that speed, '
@@ -98,10 +98,10 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
     return lines
 
 
-def main_dof(manoeuvre: Manoeuvre, case: Case) -> int:
-    """Return the DOF of the manoeuvre, or the first controlled one if it has none."""
-    dofs = findings.manoeuvre_dofs(manoeuvre)
-    return dofs[0] if dofs else int(np.flatnonzero(case.vehicle.wrench_weights)[0])
+def main_dofs(manoeuvre: Manoeuvre, case: Case) -> list[int]:
+    """Return the DOFs of the manoeuvre, or the first controlled one if it has none."""
+    return findings.manoeuvre_dofs(manoeuvre) or [
+        int(np.flatnonzero(case.vehicle.wrench_weights)[0])]
 
 
 def candidates_report(drawings: Drawings, folder: Path, cases: Sequence[Case],

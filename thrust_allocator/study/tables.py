@@ -36,15 +36,17 @@ def _wrench(prefix: str) -> list[str]:
 
 
 def write_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep,
-                     shares: dict[str, np.ndarray], dof: int) -> None:
-    """Write thrusts by moving bounds, the bounds, and the shares (n,) of a DOF's wrench [%]."""
+                     shares: dict[int, dict[str, np.ndarray]]) -> None:
+    """Write thrusts by moving bounds, the bounds, and the shares (n,) of DOFs' wrenches [%]."""
     names = [thruster.name for thruster in vehicle.thrusters]
     header = ['speed [m/s]'] + [f'{name} {what} [N]' for what in ('thrust', 'lower', 'upper')
                                 for name in names]
-    header += [f'{DOFS[dof]} share of {name} [%]' for name in shares]
+    header += [f'{DOFS[dof]} share of {name} [%]' for dof, who in shares.items()
+               for name in who]
     moving = allocation.thrusts[:, list(ALLOCATORS).index('moving bounds')]
     write_csv(path, header, (
-        [speed, *thrusts, *limits.ravel(), *(share[i] for share in shares.values())]
+        [speed, *thrusts, *limits.ravel(),
+         *(share[i] for who in shares.values() for share in who.values())]
         for i, (speed, thrusts, limits) in enumerate(zip(speeds, moving, allocation.limits))))
 
 

@@ -1,5 +1,6 @@
 """Who follows the tutorial gets the vehicle on its drawing, and what the tutorial shows."""
 
+from dataclasses import replace
 import math
 import re
 
@@ -8,10 +9,12 @@ from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
 from support.paths import ROOT
+from support.vehicles import propeller
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.physics.models import Tunnel
 import yaml
 
 TUTORIAL = (ROOT / 'doc/tutorial.md').read_text('utf-8')
@@ -91,8 +94,8 @@ def test_what_gives_way_as_shown(start, my_vehicle):
     node, peer = start('start_enabled:=true', file=my_vehicle)
     command, forward = [200.0, 0.0, 0.0, 0.0, 0.0, 20.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     before = peer.settle(command, forward)
-    assert_allclose(before['achieved_wrench'][[0, 5]], [87.7, 8.8], atol=0.06)
-    assert_allclose(before['thrust_limits'][[0, 10]], [-37.27, 48.01], atol=0.005)
+    assert_allclose(before['achieved_wrench'][[0, 5]], [79.6, 8.0], atol=0.06)
+    assert_allclose(before['thrust_limits'][[0, 10]], [-33.83, 43.58], atol=0.005)
 
     def after(name, value, *others):
         """Set a parameter, compare the setpoints with those shown, return surge and yaw."""
@@ -104,14 +107,32 @@ def test_what_gives_way_as_shown(start, my_vehicle):
                         yaml.safe_load(shown(f'{name} {value}')), atol=0.0051)
         return tick['achieved_wrench'][[0, 5]]
 
-    assert_allclose(after('direction_keeping', '0.0'), [120.6, 0.0], atol=0.06)
+    assert_allclose(after('direction_keeping', '0.0'), [109.5, 0.0], atol=0.06)
     node._report()  # of what was before
     peer.settle(command, forward)
     node._report()
     said = re.sub('in [0-9]+% of', 'in 100% of', node.reporter.present('shortfall'))
     assert said == shown('## 8. Read the diagnostics')
-    assert_allclose(after('wrench_weights.yaw', '1.0e7'), [72.9, 12.7], atol=0.06)
+    assert_allclose(after('wrench_weights.yaw', '1.0e7'), [63.8, 12.2], atol=0.06)
     after('power_limit', '600.0', ('direction_keeping', '1.0'))
+
+
+def test_c_and_decay_by_hand():
+    """The formulas give back what the models were made with, and the figures shown."""
+    one = propeller(bollard_thrust=(-40.0, 51.4), speed_loss=(12.0, 15.6),
+                    speed_loss_quadratic=(0.0, 3.0), angle_law='cosine')
+    loss = {speed: 51.4 - one.limits(speed, 0.0)[1] for speed in (0.5, 1.2)}
+    c2 = (loss[1.2] / 1.2 - loss[0.5] / 0.5) / (1.2 - 0.5)
+    assert (c2, loss[0.5] / 0.5 - c2 * 0.5) == pytest.approx((3.0, 15.6))
+    straight, angle = replace(one, speed_loss_quadratic=(0.0, 0.0)), math.radians(30.0)
+    left = straight.limits(1.2 * math.cos(angle), 1.2 * math.sin(angle))[1]
+    assert (51.4 - left) / (1.2 * math.cos(angle)**2) == pytest.approx(15.6)
+
+    product = 19.3 * math.log(19.3 / 13.6) / (1000.0 * 1.0**2)
+    assert f'c·S = {product:.5f} m²' in TUTORIAL
+    assert f'`decay: {product / 0.00385:.2f}`' in TUTORIAL.replace('\n', ' ')
+    tunnel = Tunnel((-19.3, 19.3), product / 0.00385, 1000.0 * 0.00385)
+    assert tunnel.limits(0.0, 1.0)[1] == pytest.approx(13.6)
 
 
 def test_the_refusals_shown(start, my_vehicle):
@@ -144,5 +165,5 @@ def test_the_log_shown(start, my_vehicle):
     for publisher in peer._inputs.values():
         peer.destroy_publisher(publisher)
     peer.wait_until(lambda: len(said) == 3, 'what the node says')
-    assert [f'[WARN] [thrust_allocator]: {line}' for line in said] == shown(
-        'Start it:').splitlines()
+    assert [f'[WARN] [thrust_allocator]: {line}' for line in (
+        *node._description.warnings, *said)] == shown('Start it:').splitlines()

@@ -33,10 +33,12 @@ def test_command_prints_a_row_for_every_rival():
 
 
 @pytest.mark.parametrize('arguments, named', [
-    (('solver',), 'solver is no part, must be one of solvers, growth, saturation, node'),
+    (('solver',), 'solver is no part, must be one of solvers, growth, saturation, evidence, '
+     'node'),
     (('solvers', '--plot', 'x.svg'), '--plot draws the growth'),
     (('--plot', '/nowhere/x.svg'), '/nowhere/x.svg must end in .svg'),
-    (('--plot', 'x.png'), 'x.png must end in .svg')])
+    (('--plot', 'x.png'), 'x.png must end in .svg'),
+    (('solvers', '--pictures', '.'), '--pictures draws the evidence')])
 def test_mistakes_on_the_command_line(arguments, named):
     """A mistake ends in one plain sentence, before anything is measured."""
     done = command(*arguments)

@@ -26,7 +26,8 @@ def test_intervals_hold_the_truth(model, kind, quadratic):
     hits, worst = covered(model, kind, quadratic, tables)
     assert min(hits.values()) >= 0.75 * tables, hits
     c = max(error for name, error in worst.items() if name.split()[0] in ('speed_loss', 'decay'))
-    assert c < {'quadratic': 0.15, 'tunnel': 0.1}.get('quadratic' if quadratic else kind, 0.06), worst
+    most = {'quadratic': 0.15, 'tunnel': 0.1}
+    assert c < most.get('quadratic' if quadratic else kind, 0.06), worst
 
 
 def test_an_outlier_moves_little():

@@ -8,9 +8,10 @@ from pathlib import Path
 import platform
 import sys
 
-from thrust_allocator.benchmark import giving_way_cost, growth, node_cost, saturation, solvers
+from thrust_allocator.benchmark import (
+    evidence, giving_way_cost, growth, node_cost, saturation, solvers)
 
-PARTS = ('solvers', 'growth', 'saturation', 'node')
+PARTS = ('solvers', 'growth', 'saturation', 'evidence', 'node')
 PACKAGES = ('numpy', 'osqp', 'scipy', 'quadprog', 'daqp', 'casadi', 'ros-jazzy-rclpy')
 
 
@@ -41,6 +42,12 @@ def _svg(path: str) -> Path:
     return chosen
 
 
+def _folder(path: str) -> Path:
+    if not (chosen := Path(path)).is_dir():
+        raise argparse.ArgumentTypeError(f'{path} must be a folder that exists')
+    return chosen
+
+
 def main(args: Sequence[str] | None = None) -> int:
     """
     Run the parts that the command line names and print their tables.
@@ -56,17 +63,21 @@ def main(args: Sequence[str] | None = None) -> int:
                         help=f'what to measure, of {", ".join(PARTS)}; without one, all')
     parser.add_argument('--plot', type=_svg, metavar='FILE',
                         help='draw the growth as an SVG file; needs matplotlib and part growth')
+    parser.add_argument('--pictures', type=_folder, metavar='DIR',
+                        help='draw the evidence into this folder; needs matplotlib and part '
+                        'evidence')
     parser.add_argument('--quick', action='store_true', help='a short run, for a first look')
     options = parser.parse_args(None if args is None else args[1:])
     unknown = [part for part in options.parts if part not in PARTS]
     if unknown:
         parser.error(f'{unknown[0]} is no part, must be one of {", ".join(PARTS)}')
     parts = options.parts or PARTS
-    if options.plot:
-        if 'growth' not in parts:
-            parser.error('--plot draws the growth: name that part too, or none')
-        if _version('matplotlib').endswith('missing'):
-            parser.error('--plot needs matplotlib, which is not installed; the extra is `bench`')
+    if options.plot and 'growth' not in parts:
+        parser.error('--plot draws the growth: name that part too, or none')
+    if (options.plot or options.pictures) and _version('matplotlib').endswith('missing'):
+        parser.error('pictures need matplotlib, which is not installed; the extra is `bench`')
+    if options.pictures and 'evidence' not in parts:
+        parser.error('--pictures draws the evidence: name that part too, or none')
     print(f'{machine()}\n', flush=True)
     if 'solvers' in parts:
         solvers.report(*((300, 1) if options.quick else ()))
@@ -75,6 +86,8 @@ def main(args: Sequence[str] | None = None) -> int:
     if 'saturation' in parts:
         saturation.report(*((1000,) if options.quick else ()))
         giving_way_cost.report(*((1,) if options.quick else ()))
+    if 'evidence' in parts:
+        evidence.report(options.pictures)
     if 'node' in parts:
         node_cost.report(options.quick)
     return 0

@@ -10,12 +10,13 @@ from scipy.optimize import brentq, least_squares
 from thrust_allocator.benchmark.published import b_series, Oblique, OpenWater, rotor_in_oblique_flow
 from thrust_allocator.markdown import table
 from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.table import THRUSTER
 from thrust_allocator.physics.models import Propeller
 
 # Advance ratios are turned into speeds as if each propeller were the T200 of BlueROV2, 0.076 m and
 # 58.9 rev/s: only the paper's law, whose critical angle goes with the speed, depends on it
 TIP = 0.076 * 58.9  # n D [m/s]
-_DEFAULTS = {one.name: one.default for one in MODEL_PARAMETERS[Propeller].all
+_DEFAULTS = {one.name: one.default for one in (*THRUSTER, *MODEL_PARAMETERS[Propeller].all)
              if not one.name.startswith('propeller.')}
 
 

@@ -8,10 +8,12 @@ import numpy as np
 from thrust_allocator.fit.errors import FitError
 from thrust_allocator.fit.measurements import Measurements, SENSES
 from thrust_allocator.parameters.models import MODEL_PARAMETERS
+from thrust_allocator.parameters.table import THRUSTER
 from thrust_allocator.physics.models import Limits, Propeller, ThrusterModel, Tunnel
 
 AXIAL = math.radians(75.0)  # beyond it too little of the axial loss is left to tell it
 OBLIQUE = math.radians(10.0)  # below it the angle laws are alike
+_DEFAULTS = {one.name: one.default for one in THRUSTER}
 SECOND = math.pi / 2 + 0.2  # about where opposed flow begins at 1 m/s
 
 
@@ -40,7 +42,7 @@ class Law:
 
     def thruster(self, bollard: Limits, found: Sequence[float]) -> ThrusterModel:
         """Return the package's own model with some values of the unknowns."""
-        values = {**self.values, 'bollard_thrust': bollard}
+        values = {**_DEFAULTS, **self.values, 'bollard_thrust': bollard}
         for one, value in zip(self.coefficients, found):
             if one.side is None:
                 values[one.name] = float(value)

@@ -9,7 +9,7 @@ jazzy = ['ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces']
 
 setup(
     name=package_name,
-    version='0.1.0',
+    version='0.2.0',
     packages=find_packages(include=[package_name, f'{package_name}.*']),
     package_data={f'{package_name}.benchmark.published': ['*.csv']},
     data_files=[

@@ -2,12 +2,15 @@
 
 import math
 
+from builtin_interfaces.msg import Time
 import numpy as np
 from numpy.testing import assert_allclose, assert_array_equal
 from sensor_msgs.msg import JointState
 from support.live_parameters import change
 from support.paths import CONFIG
 from support.stepped_peer import inside_limits, is_stopped
+from thrust_allocator.parameters.build import load_vehicle
+from thrust_allocator.ros.markers import LONGEST, thruster_markers
 
 FILE = CONFIG / 'delphin2_fins.yaml'
 FINS = slice(5, 9)
@@ -84,3 +87,18 @@ def test_live(stepped):
     assert change(one, {TOP + 'enabled': False}) == [(True, '')]
     tick = one.step()
     assert tick['thruster_setpoints'][5] == 0.0 and not tick['thrust_limits'][[5, 14]].any()
+
+
+def test_markers_of_fins_alone():
+    """With nothing that has Bollard thrust, arrows are scaled by the lift at 1 m/s."""
+    fins = load_vehicle(FILE).thrusters[FINS]
+    lift = np.array([2.0, -2.0, 1.0, 0.0])
+    message = thruster_markers(fins, lift, np.tile([[-3.0], [3.0]], 4), np.ones(3), 'hull', Time())
+    arrows = [marker for marker in message.markers if marker.ns == 'thrust']
+    span = 0.34 * math.sqrt(2.0)
+    for marker, one, thrust in zip(arrows, fins, lift):
+        if thrust:
+            tail, head = ([point.x, point.y, point.z] for point in marker.points)
+            assert_allclose(np.subtract(head, tail), thrust * LONGEST * span / (
+                PER_RADIAN * 0.5236) * np.array(one.direction), rtol=1e-4, atol=1e-12)
+    assert not arrows[3].points

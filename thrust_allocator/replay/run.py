@@ -110,8 +110,6 @@ class Run:
             self.voltages.append((now, content))
             if self._allocator.settings.rating.nominal_voltage:
                 inputs.accept_voltage(content, now, self._allocator.settings.rating)
-        elif message.name == 'battery' and self._allocator.settings.rating.nominal_voltage:
-            inputs.accept_voltage(content, now, self._allocator.settings.rating)
         if inputs.dropped != self._known_dropped:
             for cause in inputs.dropped - self._known_dropped:
                 self.events.append(Event(now, f'message dropped: {cause}'))

@@ -7,6 +7,7 @@ from hypothesis import given, strategies as st
 import numpy as np
 import pytest
 from support.vehicles import described, fin, HEAVE, limits_of, PITCH, thruster
+from thrust_allocator.parameters.build import describe
 from thrust_allocator.physics.flow import FlowAtThrusters
 from thrust_allocator.physics.rate import RateLimits
 from thrust_allocator.physics.vehicle import Vehicle
@@ -109,6 +110,22 @@ def test_fins_beside_tunnels(weight, lift):
     found = AllocationProblem(vehicle).solve(command, limits)
     assert found.thrusts[2:].sum() == pytest.approx(lift, abs=1e-5)
     assert found.achieved[[HEAVE, PITCH]] == pytest.approx((0.0, 4.0), abs=1e-5)
+
+
+def test_a_file_in_either_frame():
+    """Position, direction and chord of a flu file are turned; lengths of the two do not count."""
+    given = {'thruster_names': ['f'], **{f'thrusters.f.{name}': value for name, value in {
+        'model': 'fin', 'fin_area': 0.0062, 'lift_slope': 3.0, 'max_deflection': 0.5,
+        'cut_in_speed': 0.5}.items()}}
+    vehicles = [describe(given | {
+        'vehicle_frame': frame, 'thrusters.f.position': [-1.0, 0.2 * side, 0.1 * side],
+        'thrusters.f.direction': [0.0, 3.0 * side, 4.0 * side],
+        'thrusters.f.chord': [5.0, -4.0 * side, 3.0 * side]}).vehicle
+        for frame, side in (('frd', 1.0), ('flu', -1.0))]
+    assert vehicles[0].thrusters == vehicles[1].thrusters
+    assert vehicles[0].thrusters[0].model.chord == pytest.approx(
+        np.array([5.0, -4.0, 3.0]) / math.sqrt(50.0))
+    assert vehicles[0].thrusters[0].model.gain == pytest.approx(0.5 * 1025.0 * 0.0062 * 3.0)
 
 
 def test_a_vehicle_of_fins_alone():

@@ -17,7 +17,7 @@ from thrust_allocator.tick import Allocator
 
 ANOTHER_CLOCK = 3600 * 10**9  # [ns]; a stamp so far from the recorder's time is on another one
 LATENCY = 10**6  # [ns], which a tick takes from its inputs to its setpoints
-SAMPLE = 100 * 10**6  # [ns] between two looks at the power
+SAMPLE = 200 * 10**6  # [ns] between two looks at the power
 
 
 class Event(NamedTuple):

@@ -3,17 +3,21 @@
 from dataclasses import replace
 import math
 import re
+import sys
+from types import ModuleType
 
 import numpy as np
 from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
 from support.paths import ROOT
+from thrust_allocator.findings import Level
 from support.vehicles import propeller
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
+from thrust_allocator.ros.command_line import read_command_line
 from thrust_allocator.physics.models import Tunnel
 import yaml
 
@@ -33,26 +37,31 @@ DRAWING = {  # position and direction of positive thrust: x forward, y starboard
 @pytest.fixture
 def my_vehicle(tmp_path):
     """Return the path of the tutorial's YAML, as a reader would have saved it."""
-    text, = re.findall(r'^```yaml\n(.*?)^```$', TUTORIAL, re.M | re.S)
     path = tmp_path / 'my_vehicle.yaml'
-    path.write_text(text, encoding='utf-8')
+    path.write_text(shown('## 5. The file', 'yaml'), encoding='utf-8')
     return path
 
 
-def shown(after):
-    """Return the text block that the tutorial shows next after some words."""
-    return re.search(r'^```text\n(.*?)\n```$', TUTORIAL[TUTORIAL.index(after):], re.M | re.S)[1]
+def shown(after, kind='text'):
+    """Return the block of a kind that the tutorial shows next after some words."""
+    pattern = rf'^```{kind}\n(.*?)\n```$'
+    return re.search(pattern, TUTORIAL[TUTORIAL.index(after):], re.M | re.S)[1]
+
+
+def echoed(text):
+    """Return the numbers of an array as `ros2 topic echo --field data` prints it."""
+    return yaml.safe_load(re.fullmatch(r"array\('d', (\[.*\])\)\n---", text)[1])
 
 
 def wrenches():
     """Return what the tutorial sends on cmd_wrench and shows of it: (text, (6,), (p,)) of each."""
-    pattern = r'"(\{.*?\})"\n(?:ros2 topic echo.*\n)?```\n\n```text\n(\[.*\])\n```'
+    pattern = r'"(\{.*?\})"\n(?:ros2 topic echo.*\n)?```\n\n```text\n(array.*\n---)\n```'
     found = []
     for sent, heard in re.findall(r'cmd_wrench geometry_msgs/msg/Wrench ' + pattern, TUTORIAL):
         wrench = yaml.safe_load(sent)
         found.append((sent, np.array([wrench.get(group, {}).get(axis, 0.0) for group in
                                       ('force', 'torque') for axis in 'xyz']),
-                      yaml.safe_load(heard)))
+                      echoed(heard)))
     return found
 
 
@@ -104,7 +113,7 @@ def test_what_gives_way_as_shown(start, my_vehicle):
             assert node.set_parameters([Parameter(one[0], value=typed)])[0].successful
         tick = peer.settle(command, forward)
         assert_allclose(tick['thruster_setpoints'],
-                        yaml.safe_load(shown(f'{name} {value}')), atol=0.0051)
+                        echoed(shown(f'{name} {value}')), atol=0.0051)
         return tick['achieved_wrench'][[0, 5]]
 
     assert_allclose(after('direction_keeping', '0.0'), [109.5, 0.0], atol=0.06)
@@ -112,7 +121,8 @@ def test_what_gives_way_as_shown(start, my_vehicle):
     peer.settle(command, forward)
     node._report()
     said = re.sub('in [0-9]+% of', 'in 100% of', node.reporter.present('shortfall'))
-    assert said == shown('## 8. Read the diagnostics')
+    status, = yaml.safe_load(shown('## 8. Read the diagnostics'))['status']
+    assert (status['level'], status['message']) == (chr(Level.WARN), said)
     assert_allclose(after('wrench_weights.yaw', '1.0e7'), [63.8, 12.2], atol=0.06)
     after('power_limit', '600.0', ('direction_keeping', '1.0'))
 
@@ -142,7 +152,7 @@ def test_the_refusals_shown(start, my_vehicle):
         Parameter('wrench_weights.yaw', value='1.0e8'),
         Parameter('thrusters.front_left.position', value=[0.0, 0.0, 0.0])])
     assert [f'Setting parameter failed: {result.reason}' for result in results] == (
-        shown('## 9. Keep').splitlines())
+        shown('## 10. Keep').splitlines())
 
 
 def test_the_mistake_shown(my_vehicle):
@@ -165,5 +175,49 @@ def test_the_log_shown(start, my_vehicle):
     for publisher in peer._inputs.values():
         peer.destroy_publisher(publisher)
     peer.wait_until(lambda: len(said) == 3, 'what the node says')
-    assert [f'[WARN] [thrust_allocator]: {line}' for line in (
-        *node._description.warnings, *said)] == shown('Start it:').splitlines()
+    log = re.sub(r' \[[0-9]{10}\.[0-9]{9}\]', '', shown('Start it:'))  # the times
+    started = node._description
+    assert [f'{level} [thrust_allocator]: {line}' for level, lines in (
+        ('[INFO]', started.remarks), ('[WARN]', (*started.warnings, *said)))
+        for line in lines] == log.splitlines()
+
+
+def test_what_a_unit_is_worth_as_shown(monkeypatch, capsys):
+    """The example of step 3 prints what stands below it."""
+    monkeypatch.chdir(ROOT)
+    exec(shown('What this is worth', 'python'), {})
+    assert capsys.readouterr().out.rstrip() == shown('What this is worth')
+
+
+def test_the_table_of_the_driver():
+    """It rises from one Bollard limit of the vehicle to the other, and has as many signals."""
+    signals, thrusts = (
+        [float(cell.replace('−', '-')) for cell in re.findall(r'−?[0-9.]+(?= )', row)]
+        for row in re.findall(r'^\| (?:PWM, µs|thrust at rest, N) \|(.*)$', TUTORIAL, re.M))
+    assert len(signals) == len(thrusts) and signals == sorted(signals)
+    assert thrusts == sorted(thrusts) and (thrusts[0], thrusts[-1]) == (-39.9, 51.4)
+    assert np.interp(0.0, thrusts, signals) == 1500.0
+
+
+def test_the_fin_shown():
+    """It is the first of those in config/delphin2_fins.yaml."""
+    fin = yaml.safe_load(shown('A fin, whose lift', 'yaml'))['fin_top']
+    file = yaml.safe_load((ROOT / 'config/delphin2_fins.yaml').read_text('utf-8'))
+    assert fin == file['/**']['ros__parameters']['thrusters']['fin_top']
+
+
+def test_the_launch_file_shown(monkeypatch):
+    """What launch_ros makes of it is a command line that the node takes, with a file for each."""
+    launch, actions = ModuleType('launch'), ModuleType('launch_ros.actions')
+    launch.LaunchDescription, actions.Node = list, dict
+    monkeypatch.setitem(sys.modules, 'launch', launch)
+    monkeypatch.setitem(sys.modules, 'launch_ros.actions', actions)
+    exec(shown('### Two vehicles', 'python'), found := {})
+    nodes = found['generate_launch_description']()
+    assert [node['namespace'] for node in nodes] == ['alpha', 'bravo']
+    for node in nodes:
+        assert (ROOT / 'resource/executables' / node['executable']).is_file()
+        line = read_command_line([
+            node['executable'], '--ros-args', '-r', f'__node:={node["name"]}', '-r',
+            f'__ns:=/{node["namespace"]}', '--params-file', *node['parameters']])
+        assert (line.files, line.unknown) == ([f'{node["namespace"]}.yaml'], [])

@@ -13,9 +13,10 @@ _MOST = 7  # angles with a colour of their own
 
 def draw(solution: Solution, title: str, path: Path) -> None:
     """
-    Draw each sense: rows as marks, the law at the largest command of each angle as a line.
+    Draw each sense: rows as dots, the law at the largest command of each angle as a line.
 
-    A mark is scaled to that command by what either gives at rest.
+    The smaller a command, the more of its thrust a flow takes: a cross is what the law says at the
+    command of a row.
     """
     problem, rows = solution.problem, solution.problem.rows
     still = problem.curves.thrust(rows, solution.x)
@@ -29,8 +30,10 @@ def draw(solution: Solution, title: str, path: Path) -> None:
     with style.look():
         figure, axes = style.panels(
             1, len(sides), 3.6, title,
-            [Line2D([], [], marker='o', label=f'{angle} deg', **style.line(i))
-             for i, angle in enumerate(angles)])
+            [*(Line2D([], [], label=f'{angle} deg', **style.line(i))
+               for i, angle in enumerate(angles)),
+             Line2D([], [], ls='', marker='o', color='black', label='measured'),
+             Line2D([], [], ls='', marker='x', color='black', label='law at its command')])
         speeds = np.linspace(0.0, 1.05 * rows.top_speed, 100)
         for one, side in zip(axes.ravel(), sides):
             style.over_speed(one, speeds, SENSES[side], 'share of the thrust at rest')
@@ -43,7 +46,8 @@ def draw(solution: Solution, title: str, path: Path) -> None:
                 law = [abs(model.thrust_in_flow(drive if side else -drive, *flow)) / drive
                        for flow in zip(along, across)]
                 one.plot(speeds, law, **style.line(i))
-                one.plot(rows.speed[mine], (rows.thrust / np.maximum(still, 1e-9))[mine], 'o',
-                         color=style.line(i)['color'], ms=4)
+                for thrust, mark in ((rows.thrust, 'o'), (problem.delivered(solution.x), 'x')):
+                    one.plot(rows.speed[mine], (thrust / np.maximum(still, 1e-9))[mine], mark,
+                             color=style.line(i)['color'], ms=4 if mark == 'o' else 7)
         style.finish(axes, len(sides), 'speed through the water [m/s]')
         style.save(figure, path)

@@ -88,13 +88,18 @@ def _runs(solution: Solution, certainty: Certainty) -> str:
     rows = solution.problem.rows
     place = {line: i for i, line in enumerate(rows.line.tolist())}
     lines = []
-    for one in certainty.left_out:
+    for one in sorted(certainty.left_out, key=lambda one: one.lines.min()):
         mine = [place[line] for line in one.lines.tolist()]
         lines.append((
-            _lines(one.lines.tolist()), f'{rows.speed[mine].min():g}–{rows.speed[mine].max():g}',
-            f'{np.degrees(rows.angle[mine]).min():.0f}–{np.degrees(rows.angle[mine]).max():.0f}',
+            _lines(one.lines.tolist()), _range(rows.speed[mine]),
+            _range(np.degrees(rows.angle[mine]).round()),
             f'{np.sqrt((one.error**2).mean()):.3g}', f'{one.error.max():+.3g}'))
     return table(('left out: lines', 'speed [m/s]', 'angle [deg]', 'RMS [N]', 'most [N]'), lines)
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = f'{values.min():g}', f'{values.max():g}'
+    return low if low == high else f'{low}–{high}'
 
 
 def _lines(numbers: list[int]) -> str:

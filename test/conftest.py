@@ -83,4 +83,5 @@ def stepped(start):
     from support.stepped_peer import SteppedPeer
 
     return lambda *rules, **options: start(
-        'use_sim_time:=true', 'message_frame:=frd', *rules, kind=SteppedPeer, **options)[1]
+        'use_sim_time:=true', 'tick_on_wrench:=false', 'message_frame:=frd', *rules,
+        kind=SteppedPeer, **options)[1]

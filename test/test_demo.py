@@ -92,7 +92,7 @@ def test_the_eavesdropper_is_not_deaf(launch, eavesdropper):
 def test_no_answer(monkeypatch, capsys):
     """If the allocator does not answer, the demo gives up with status 1 and says so."""
     monkeypatch.setattr(demo, 'PATIENCE', 0.2)
-    monkeypatch.setattr(ThrustAllocator, '_tick', lambda self: None)
+    monkeypatch.setattr(ThrustAllocator, '_tick', lambda *arguments: None)
     assert demo.main(['demo']) == 1
     captured = capsys.readouterr()
     assert 'did not answer' in captured.err

@@ -73,16 +73,19 @@ class Inputs:
         self.smoothing = Smoothing(0.0, 0.0)  # of the velocities that come
         self.dropped: Counter[str] = Counter()  # messages by topic and cause
 
-    def accept_wrench(self, wrench: np.ndarray, now: int, old: int = 0) -> None:
+    def accept_wrench(self, wrench: np.ndarray, now: int, old: int = 0) -> bool:
         """
-        Remember a commanded wrench, (6,) [N, N*m].
+        Remember a commanded wrench, (6,) [N, N*m], and tell whether it is sound.
 
         :param old: its age by its stamp [ns]; one from the future is dropped.
         """
         if old < -AHEAD:
             self.dropped['cmd_wrench stamped in the future'] += 1
-        elif self._is_sound('cmd_wrench', wrench, LARGEST_WRENCH):
+            return False
+        sound = self._is_sound('cmd_wrench', wrench, LARGEST_WRENCH)
+        if sound:
             self.wrench = Received(wrench, now, old=old)
+        return sound
 
     def accept_velocity(self, twist: np.ndarray, now: int, topic: str, frame: str = '',
                         orientation: np.ndarray | None = None, child_frame: str = '') -> None:

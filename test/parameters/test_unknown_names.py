@@ -3,7 +3,6 @@
 import pytest
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
-from thrust_allocator.parameters.reserved import RESERVED
 from thrust_allocator.parameters.spelling import is_slip
 from thrust_allocator.parameters.types import ParameterError
 
@@ -80,21 +79,6 @@ def test_edit_distance(name, known, slip):
 def test_any_unknown_name_of_our_own_is_refused(name):
     """A name given for this node alone, or by -p, is nobody else's."""
     assert refusal({name: 1.0}, own=[name]).startswith(f'{name}: is no parameter here')
-
-
-@pytest.mark.parametrize('pattern', RESERVED)
-def test_what_is_to_come_is_refused(pattern):
-    """A reserved name is refused wherever it stands, with or without a known thruster."""
-    for name in {pattern.replace('*', 'up'), pattern.replace('*', 'nobody')}:
-        for own in ((), (name,)):
-            assert refusal({name: 0.0}, own) == f'{name}: is not built yet, must be left out'
-
-
-def test_reserved_names_are_no_parameters():
-    """Whoever builds a parameter deletes its line: no reserved name is accepted as well."""
-    known = read_parameters(MT2012_VALUES).definitions
-    assert not {pattern.replace('*', thruster) for pattern in RESERVED
-                for thruster in MT2012_VALUES['thruster_names']} & set(known)
 
 
 @pytest.mark.parametrize('names', [['FL', 'T1', 'up', 'aB_9']])

@@ -51,12 +51,13 @@ def test_topics_that_are_not_what_they_should_be(refused, mt2012, tmp_path):
         bag, mt2012, '--topic', 'cmd_wrench:=/odom')
 
 
-def test_what_is_no_bag(refused, mt2012, tmp_path):
+def test_what_is_no_bag(refused, mt2012, variant, tmp_path):
     """A path that is not there, and a file of something else."""
     assert 'cannot be read: No such file' in refused(tmp_path / 'none', mt2012)
     assert 'is no bag' in refused(mt2012, mt2012)
     assert 'makes a tick' in refused(
-        write(tmp_path / 'one', [(0.0, '/cmd_wrench', mission(0.1)[1][2])]), mt2012)
+        write(tmp_path / 'one', [(0.0, '/cmd_wrench', mission(0.1)[1][2])]),
+        variant({'tick_on_wrench': False}))
 
 
 def test_mistakes_in_vehicles(refused, mt2012, variant, tmp_path):

@@ -8,8 +8,10 @@ import pytest
 from rosbags.rosbag2 import Reader
 from support.bags import array, mission, odometry, stamped_wrench, START, STORE, wrench, write
 from support.vehicles import PAPER_TEST
+from thrust_allocator.parameters.build import describe
+from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.physics.frames import DOFS
-from thrust_allocator.replay.schedule import Schedule
+from thrust_allocator.replay.run import Run
 
 
 def table(folder) -> dict[str, np.ndarray]:
@@ -195,24 +197,14 @@ def test_namespaces_remaps_and_other_types(undrawn, replay, variant, tmp_path):
         assert not found['dropped']
 
 
-def test_schedule_of_the_contract():
-    """On each wrench, half a period apart at least; 1.5 periods after the last; at the expiry."""
-    values = {'rate': 50.0, 'tick_on_wrench': True, 'wrench_timeout': 0.1}
-    ms = 10**6
-    schedule = Schedule(values, 0)
-    assert list(schedule.until(10 * ms)) == []
-    schedule.wrench_accepted(10 * ms)
-    assert list(schedule.until(12 * ms)) == [10 * ms]
-    schedule.wrench_accepted(12 * ms)
-    schedule.wrench_accepted(13 * ms)
-    assert list(schedule.until(75 * ms)) == [20 * ms, 50 * ms]
-    assert list(schedule.until(115 * ms)) == [80 * ms, 110 * ms, 113 * ms + 1]
-    values['tick_on_wrench'] = False
-    schedule = Schedule(values, 0)
-    assert list(schedule.until(61 * ms)) == [20 * ms, 40 * ms, 60 * ms]
-    year = 365 * 86400 * 1000 * ms  # a silence, or a damaged time
-    assert len(list(schedule.until(year))) == 3000
-    assert list(schedule.until(year + 41 * ms)) == [year + 20 * ms, year + 40 * ms]
+def test_no_ticks_are_made_of_a_long_silence(mt2012):
+    """After a minute without a message there are none until the next, from which all goes on."""
+    run = Run('vehicle', describe(read_parameter_file(mt2012)), {}, 0, as_recorded=False)
+    year = 365 * 86400 * 10**9  # [ns], a silence, or a damaged time
+    run.finish(year)
+    assert len(run.ticks) == 2000  # 1.5 periods apart, for no wrench came
+    run.finish(year + 70 * 10**6)
+    assert (run.ticks.times[2000:] - year).tolist() == [30 * 10**6, 60 * 10**6]
 
 
 def test_a_long_recording_is_thinned_for_the_pictures(replay, mt2012, tmp_path):

@@ -33,7 +33,7 @@ def described(stepped, tmp_path):
     path = tmp_path / 'bare.yaml'
     path.write_text(json.dumps({'/**': {'ros__parameters': {  # also YAML
         'thruster_names': list(BARE), 'thrusters': BARE}}}), encoding='utf-8')
-    one = stepped(file=path)
+    one = stepped('tick_on_wrench:=true', file=path)
     client = one._parameters
     names = sorted(name for name in one._result(client.list_parameters([], 0)).result.names
                    if not is_of_every_node(name))

@@ -26,7 +26,7 @@ def start(monkeypatch, capfd):
             node.stop = lambda: None
             started.append(node)
 
-        def spin_once(self, timeout_sec):
+        def spin_once(self):
             os.kill(os.getpid(), signal.SIGINT)
 
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -99,7 +99,6 @@ def test_mt2012_runs_if_nothing_else_is_asked_for(start, arguments):
     (['--ros-args', '-p', 'rate:='], 'rate: has no value'),
     (['--ros-args', '-p', 'kp:=1.0'], 'kp: is no parameter here'),
     (['--ros-args', '-p', 'start_enable:=false'], 'did you mean start_enabled?'),
-    (['--ros-args', '-p', 'nominal_voltage:=16.0'], 'nominal_voltage: is not built yet'),
     (['--ros-args', '-p', 'fallback_velocity:=[0, 0.5, 0]'], 'fallback_velocity: is [0, 0.5, 0], '
                                                              'mixes whole and real'),
     (['--ros-args', '-p', 'rate:=[]'], 'rate: is [], must be a number'),

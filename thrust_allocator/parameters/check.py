@@ -7,7 +7,6 @@ from typing import Any
 
 from thrust_allocator.parameters.definition import Definition, REQUIRED
 from thrust_allocator.parameters.models import MODEL_PARAMETERS
-from thrust_allocator.parameters.reserved import refuse_reserved
 from thrust_allocator.parameters.spelling import is_slip, nearest
 from thrust_allocator.parameters.table import NODE, THRUSTER, THRUSTER_NAMES
 from thrust_allocator.parameters.types import ParameterError
@@ -45,7 +44,6 @@ def read_parameters(given: Mapping[str, Any], own: Collection[str] = (),
     :raises ParameterError: for the first value that is missing, unknown, of the wrong type or out
         of range, and for values that contradict each other.
     """
-    refuse_reserved(given)
     thrusters = _read(given, 'thruster_names', THRUSTER_NAMES)
     definitions = {definition.name: definition for definition in (THRUSTER_NAMES, *NODE)}
     if _read(given, 'velocity_type', definitions['velocity_type']) != 'odometry':

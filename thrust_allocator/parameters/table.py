@@ -11,7 +11,10 @@ THRUSTER_NAMES = Definition('thruster_names', Names(), REQUIRED, '', 'the order 
                             live=False)
 
 NODE = (
-    Definition('rate', Real(0.0, 1000.0, above=True), 50.0, 'Hz', 'ticks per second'),
+    Definition('rate', Real(0.0, 1000.0, above=True), 50.0, 'Hz',
+               'ticks per second; with tick_on_wrench 2/3 of it, if no wrench comes, to twice it'),
+    Definition('tick_on_wrench', Flag(), True, '',
+               'whether a wrench makes a tick at once, and the timer one only where none comes'),
     Definition('water_density', POSITIVE, 1025.0, 'kg/m^3', 'density of the water'),
     Definition('vehicle_frame', Choice(FRAMES), 'frd', '', 'axes of positions and directions',
                live=False),

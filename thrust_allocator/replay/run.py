@@ -10,12 +10,13 @@ from thrust_allocator.inputs import Inputs
 from thrust_allocator.parameters.build import Description
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.replay.bag import Message
-from thrust_allocator.replay.schedule import Schedule
 from thrust_allocator.replay.ticks import Ticks
+from thrust_allocator.schedule import Schedule
 from thrust_allocator.setpoints import SETPOINTS
 from thrust_allocator.tick import Allocator
 
 ANOTHER_CLOCK = 3600 * 10**9  # [ns]; a stamp so far from the recorder's time is on another one
+SILENCE = 60 * 10**9  # [ns], after which ticks, which are all alike then, are made no more
 LATENCY = 10**6  # [ns], which a tick takes from its inputs to its setpoints
 SAMPLE = 200 * 10**6  # [ns] between two looks at the power
 
@@ -46,6 +47,7 @@ class Run:
         self._inputs = Inputs()
         self._allocator = Allocator.of(description)
         self._schedule = None if as_recorded else Schedule(description.parameters.values, start)
+        self._heard = start  # of a message [ns]
         self._enabled = description.parameters.values['start_enabled']
         self._has_fins = any(one.model.DEFLECTS for one in description.vehicle.thrusters)
         self._velocity = ('odom' if description.parameters.values['velocity_type'] == 'odometry'
@@ -72,8 +74,7 @@ class Run:
     def take(self, message: Message) -> None:
         """Take one recorded message, after the ticks that come before it."""
         if self._schedule:
-            for time in self._schedule.until(message.time):
-                self._tick(time)
+            self._tick_until(message.time)
             self._use(message)
         elif message.name == 'thruster_setpoints':
             self._tick_as_recorded(message)
@@ -89,17 +90,27 @@ class Run:
     def finish(self, time: int) -> None:
         """Tick until the end of the recording [ns], and take what came after the last tick."""
         if self._schedule:
-            for moment in self._schedule.until(time):
-                self._tick(moment)
+            self._tick_until(time)
         while self._waiting:
             self._use(self._waiting.popleft())
+
+    def _tick_until(self, time: int) -> None:
+        """Make the ticks that come before a time, when the next message does [ns]."""
+        silent, self._heard = self._heard + SILENCE, time
+        while (due := self._schedule.due) < time:
+            if due > silent:
+                self._schedule.forget(time)
+                return
+            self._schedule.tick(due)
+            self._tick(due)
 
     def _accept(self, message: Message) -> None:
         content, now, inputs = message.content, message.time, self._inputs
         if message.name == 'cmd_wrench':
             old = now - content.stamp if content.stamp else 0
-            inputs.accept_wrench(content.wrench, now, old if abs(old) < ANOTHER_CLOCK else 0)
-            if self._schedule and inputs.wrench is not None and inputs.wrench.time == now:
+            counts = inputs.accept_wrench(
+                content.wrench, now, old if abs(old) < ANOTHER_CLOCK else 0)
+            if counts and self._schedule:
                 self._schedule.wrench_accepted(now)
         elif message.name == self._velocity:
             inputs.accept_velocity(content.twist, now, message.name, content.frame,
@@ -141,7 +152,7 @@ class Run:
         makes the ticks, the newest one made this.
         """
         begun = message.time - LATENCY
-        if self.description.parameters.values.get('tick_on_wrench', False):
+        if self.description.parameters.values['tick_on_wrench']:
             begun = max([begun, *(one.time for one in self._waiting if one.name == 'cmd_wrench')])
         while self._waiting and self._waiting[0].time <= begun:
             self._use(self._waiting.popleft())

@@ -1,31 +1,28 @@
 """The ROS 2 node: takes messages in, asks for a tick, and sends it out."""
 
-from collections.abc import Callable
 import time
 from typing import Any
 
-from geometry_msgs.msg import (
-    Twist, TwistStamped, TwistWithCovarianceStamped, Vector3Stamped, Wrench, WrenchStamped)
-from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType, JumpThreshold
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from rclpy.subscription import Subscription
-from sensor_msgs.msg import BatteryState
 from std_srvs.srv import SetBool
 from thrust_allocator.inputs import Inputs
 from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.parameters.types import ParameterError, shown
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.markers import thruster_markers
-from thrust_allocator.ros.messages import (
-    quaternion_components, twist_components, vector_components, wrench_components)
 from thrust_allocator.ros.outputs import Outputs
 from thrust_allocator.ros.parameters import changes_of, coerced, declare, Start, take_overrides
-from thrust_allocator.ros.qos import INPUT, OVERRIDABLE, unused_overrides
+from thrust_allocator.ros.qos import OVERRIDABLE, unused_overrides
 from thrust_allocator.ros.reporter import Reporter
+from thrust_allocator.ros.subscriptions import Subscriptions
+from thrust_allocator.ros.ticker import Ticker
 from thrust_allocator.ros.topics import check_topics
 from thrust_allocator.ros.wrench_limits import WrenchLimits
 from thrust_allocator.tick import Allocator, Tick
@@ -34,7 +31,6 @@ from visualization_msgs.msg import MarkerArray
 LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
 REPORT_PERIOD = 1.0  # [s] between diagnostics
 SHOW_PERIOD = 0.2  # [s] between pictures, and between wrench limits, if anybody looks
-LATE = 1.5  # periods after the tick before, from which on a tick is late
 
 
 class ThrustAllocator(Node):
@@ -64,11 +60,10 @@ class ThrustAllocator(Node):
         # The steady clock, so that setting the system clock changes nothing
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._simulated = self.get_parameter('use_sim_time').value
-        self._tick_clock = self.get_clock() if self._simulated else steady
+        clock = self.get_clock() if self._simulated else steady
         self._inputs = Inputs()
         self._enabled = values['start_enabled']
         self._last_tick: Tick | None = None
-        self._last_time: int | None = None  # when the timer called last, on the tick's clock [ns]
         self.reporter = Reporter(self, self._inputs, self.vehicle, {
             'cmd_wrench': f'stamped_wrench is {str(values["stamped_wrench"]).lower()}',
             'twist': f'velocity_type is {values["velocity_type"]}'})
@@ -77,9 +72,12 @@ class ThrustAllocator(Node):
         self._wrench_limits = WrenchLimits(self)
         self._marker_publisher = self.create_publisher(
             MarkerArray, 'thruster_markers', 1, qos_overriding_options=OVERRIDABLE)
-        self._subscribe(values['stamped_wrench'], values['velocity_type'])
-        self._battery: Subscription | None = None
-        self._listen_to_battery(values['nominal_voltage'])
+        self._ticker = Ticker(self, clock, values, self._tick)
+        self._ears = Subscriptions(
+            self, self._inputs, self._ticker.now, values['stamped_wrench'],
+            values['velocity_type'], self._ticker.wrench_accepted,
+            lambda: self._allocator.settings.rating)
+        self._ears.listen_to_battery(bool(values['nominal_voltage']))
         for name in unused_overrides(self):
             self.get_logger().warning(f'{name}: is for no topic of this node; it is ignored')
         self.create_service(SetBool, '~/enable', self._on_enable)
@@ -88,48 +86,30 @@ class ThrustAllocator(Node):
             lambda changes: coerced(changes, self._description.parameters))
         self.add_on_set_parameters_callback(self._check_change)
         self.add_post_set_parameters_callback(self._apply)
-        self._after_messages = self.create_guard_condition(self._tick)
         self.create_timer(REPORT_PERIOD, self._report, clock=steady)
         self.create_timer(SHOW_PERIOD, self._show, clock=steady)
-        self._timer = self.create_timer(round(1e9 / values['rate']) * 1e-9, self._on_timer,
-                                        clock=self._tick_clock)
         if self._simulated:
-            self._jump_handle = self._tick_clock.create_jump_callback(
+            self._jump_handle = clock.create_jump_callback(
                 JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1)),
-                post_callback=lambda jump: self._inputs.forget())
+                post_callback=lambda jump: self._forget())
 
     @property
     def vehicle(self) -> Vehicle:
         """Return the vehicle as it is at present."""
         return self._allocator.vehicle
 
-    def _subscribe(self, stamped_wrench: bool, velocity_type: str) -> None:
-        def subscribe(kind: type, topic: str, callback: Callable[[Any], None]) -> None:
-            self.create_subscription(
-                kind, topic, callback, INPUT, qos_overriding_options=OVERRIDABLE)
+    # Each event that rclpy watches unless told otherwise costs time at every wait; the reporter
+    # looks once a second for what they would tell
 
-        if stamped_wrench:
-            subscribe(WrenchStamped, 'cmd_wrench', self._on_stamped_wrench)
-        else:
-            subscribe(Wrench, 'cmd_wrench', self._on_wrench)
-        if velocity_type == 'odometry':
-            subscribe(Odometry, 'odom', self._on_odometry)
-            subscribe(Vector3Stamped, 'current', self._on_current)
-        elif velocity_type == 'twist':
-            subscribe(TwistStamped, 'twist', lambda message: self._on_twist(message.twist))
-        else:
-            subscribe(TwistWithCovarianceStamped, 'twist',
-                      lambda message: self._on_twist(message.twist.twist))
+    def create_publisher(self, *arguments: Any, **options: Any) -> Publisher:
+        """Create a publisher without rclpy's default events."""
+        return super().create_publisher(*arguments, **{
+            'event_callbacks': PublisherEventCallbacks(use_default_callbacks=False), **options})
 
-    def _listen_to_battery(self, nominal_voltage: float) -> None:
-        """Listen to it only if its voltage counts."""
-        if nominal_voltage and self._battery is None:
-            self._battery = self.create_subscription(
-                BatteryState, 'battery', self._on_battery, INPUT,
-                qos_overriding_options=OVERRIDABLE)
-        elif not nominal_voltage and self._battery is not None:
-            self.destroy_subscription(self._battery)
-            self._battery = None
+    def create_subscription(self, *arguments: Any, **options: Any) -> Subscription:
+        """Create a subscription without rclpy's default events."""
+        return super().create_subscription(*arguments, **{
+            'event_callbacks': SubscriptionEventCallbacks(use_default_callbacks=False), **options})
 
     # Parameters
 
@@ -154,71 +134,36 @@ class ThrustAllocator(Node):
             if value != before[name]:
                 self.get_logger().info(f'{name}: {shown(before[name])} -> {shown(value)}')
         self._outputs.publish_individually(values['publish_individual'])
+        self._ticker.change(values)
         if bool(values['nominal_voltage']) != bool(before['nominal_voltage']):
-            self._listen_to_battery(values['nominal_voltage'])  # which comes here again
-        period = round(1e9 / values['rate'])  # [ns]
-        if self._timer.timer_period_ns != period:
-            self._timer.timer_period_ns = period
-            self._last_time = None  # the tick that comes cannot be late
-            if self._timer.time_until_next_call() > period:
-                self._timer.reset()
+            self._ears.listen_to_battery(
+                bool(values['nominal_voltage']))  # declares overrides, so this is called again
 
-    # Inputs
-
-    def _on_wrench(self, message: Wrench) -> None:
-        self._inputs.accept_wrench(wrench_components(message), self._now())
-
-    def _on_stamped_wrench(self, message: WrenchStamped) -> None:
-        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
-        old = self.get_clock().now().nanoseconds - stamp if stamp else 0
-        self._inputs.accept_wrench(wrench_components(message.wrench), self._now(), old)
-
-    def _on_odometry(self, message: Odometry) -> None:
-        self._inputs.accept_velocity(
-            twist_components(message.twist.twist), self._now(), 'odom', message.header.frame_id,
-            quaternion_components(message.pose.pose.orientation), message.child_frame_id)
-
-    def _on_twist(self, message: Twist) -> None:
-        self._inputs.accept_velocity(twist_components(message), self._now(), 'twist')
-
-    def _on_current(self, message: Vector3Stamped) -> None:
-        self._inputs.accept_current(
-            vector_components(message.vector), message.header.frame_id, self._now())
-
-    def _on_battery(self, message: BatteryState) -> None:
-        self._inputs.accept_voltage(
-            message.voltage, self._now(), self._allocator.settings.rating)
+    # Ticks
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and not self._enabled:
             self._inputs.wrench = None  # only a command given since counts
+            self._ticker.wrench_forgotten()
+        stops = self._enabled and not request.data
         self._enabled = request.data
+        if stops:
+            self._ticker.stopped()
         response.success, response.message = True, 'enabled' if request.data else 'disabled'
         return response
 
-    def _now(self) -> int:
-        return self._tick_clock.now().nanoseconds
+    def _forget(self) -> None:
+        """Let nothing count that came before the clock went back."""
+        self._inputs.forget()
+        self._ticker.clock_went_back()
 
-    # Ticks
-
-    def _on_timer(self) -> None:
-        now = self._now()
-        late = (self._last_time is not None
-                and now - self._last_time > LATE * self._timer.timer_period_ns)
-        self._last_time = now
-        if late:
-            self.reporter.late()
-            self._after_messages.trigger()  # so that what has come meanwhile is taken first
-        else:
-            self._tick()
-
-    def _tick(self) -> None:
-        start, now = time.perf_counter(), self._now()
+    def _tick(self, now: int, late: bool) -> None:
+        start = time.perf_counter()
         tick = self._allocator.tick(self._inputs, now, self._enabled)
         self._send(tick)
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
             self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
-        self.reporter.tick(tick, now, time.perf_counter() - start)
+        self.reporter.tick(tick, now, time.perf_counter() - start, late)
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
@@ -226,10 +171,10 @@ class ThrustAllocator(Node):
 
     def stop(self) -> None:
         """Publish zero setpoints for the last time and wait until they have been delivered."""
-        self._timer.cancel()
+        self._ticker.cancel()
         self._inputs.wrench = None
         try:
-            self._send(self._allocator.tick(self._inputs, self._now()))
+            self._send(self._allocator.tick(self._inputs, self._ticker.now()))
         except Exception:  # what has ended the node may lie in there: zeros all the same
             self._outputs.publish_zero_setpoints()
         self._outputs.wait_until_delivered()
@@ -238,14 +183,14 @@ class ThrustAllocator(Node):
     # Reports
 
     def _report(self) -> None:
-        self.reporter.report(self.vehicle, self._now(), self._simulated)
+        self.reporter.report(self.vehicle, self._ticker.now(), self._simulated)
 
     def _show(self) -> None:
         """Publish a picture of the last tick, and what could still be asked, if anybody looks."""
         if self._last_tick is None:
             return
         self.reporter.note('wrench limits', self._wrench_limits.publish(
-            self._allocator, self._last_tick), self._now())
+            self._allocator, self._last_tick), self._ticker.now())
         if self._marker_publisher.get_subscription_count():
             self._marker_publisher.publish(thruster_markers(
                 self.vehicle.thrusters, self._last_tick.thrusts, self._last_tick.limits,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+import gc
 from pathlib import Path
 import re
 import sys
@@ -56,11 +57,14 @@ def main(args: Sequence[str] | None = None) -> int:
 
 def _run(node: ThrustAllocator, signals: Sequence[int]) -> int:
     """Spin until a signal has come, publish the last zeros, and return the exit status."""
+    # What the start has left is not looked through again when live changes call for a collection
+    gc.collect()
+    gc.freeze()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
         while not signals and not node.interrupted:
-            executor.spin_once(timeout_sec=0.1)
+            executor.spin_once()  # the node's timers wake it several times per second
     except Exception:  # of nearly any type if the context is gone: even a publisher complains
         if rclpy.ok():
             raise

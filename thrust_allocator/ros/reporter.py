@@ -40,9 +40,10 @@ class Reporter:
         self._mismatches: dict[str, str] = {}
         self.lost_lines: Callable[[], int] = lambda: 0  # of the log, which nobody has read
 
-    def tick(self, tick: Tick, now: int, seconds: float) -> None:
-        """Take a tick into account that took so long [s]."""
+    def tick(self, tick: Tick, now: int, seconds: float, late: bool) -> None:
+        """Take a tick into account that took so long [s], and may have come too late."""
         self._tally.count(tick, seconds)
+        self._tally.late += late
         note_tick(self._findings, tick, now)
         if tick.wrench is not None:
             self._findings.note('wrench', '', now)
@@ -56,10 +57,6 @@ class Reporter:
     def present(self, kind: str) -> str:
         """Return the words of a finding that is there, or ''."""
         return self._findings.present(kind)
-
-    def late(self) -> None:
-        """Count a tick that comes too late."""
-        self._tally.late += 1
 
     def report(self, vehicle: Vehicle, now: int, ticks_by_clock: bool) -> None:
         """

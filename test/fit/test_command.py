@@ -149,6 +149,16 @@ def test_what_is_odd_is_said(fit, tmp_path, without_pictures):
     assert 'could not be left out' in report
 
 
+def test_angles_counted_from_the_wrong_sense_are_found(fit, tmp_path, without_pictures):
+    """Astern under reverse thrust is 180 degrees; written as 0 the law cannot describe it."""
+    rows = [replace(row, angle=0.0) for row in tow(COSINE, angles=(0.0,))]
+    _, err, report = fit(written(rows, tmp_path / 'tow.csv'))
+    assert 'bollard_thrust reverse comes out as' in err and 'are angles and speeds right?' in err
+    assert 'astern under reverse thrust is 180' in report
+    _, err, _ = fit(written(tow(COSINE, 0.01, angles=(0.0,)), tmp_path / 'tow.csv'))
+    assert 'describe' not in err
+
+
 def test_without_matplotlib(fit, tmp_path, without_pictures):
     """Everything but the picture, and a line that says so."""
     _, err, _ = fit(written(tow(COSINE, speeds=(1.0,), **FEW), tmp_path / 'tow.csv'))

@@ -117,7 +117,8 @@ def _of_sense(flow: Measurements, side: int, quadratic: bool,
             yield Coefficient('speed_loss_quadratic', side, 'N*s^2/m^2',
                               0.3 * start / into.speed.max())
     else:
-        reasons.append(f'speed_loss {sense} is not fitted: no flow within 75 degrees of its thrust')
+        reasons.append(f'speed_loss {sense} is not fitted: no flow within 75 degrees of its thrust '
+                       '(angles count from positive thrust: astern under reverse thrust is 180)')
     against = flow.rows(flow.incoming > SECOND + 0.2 * flow.speed)
     if len(against):
         # Beyond this the floor takes over at every row, and no more can be told

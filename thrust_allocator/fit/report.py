@@ -6,6 +6,8 @@ from thrust_allocator.fit.measurements import SENSES
 from thrust_allocator.fit.solution import Solution
 from thrust_allocator.markdown import table
 
+_ODD = 0.05  # share of the largest thrust by which a law that fits is not off
+
 
 def report(solution: Solution, certainty: Certainty, snippet: str, title: str,
            warnings: list[str]) -> str:
@@ -70,8 +72,18 @@ def _trust(certainty: Certainty) -> str:
 def findings(solution: Solution, certainty: Certainty) -> list[str]:
     """Return what is odd about the coefficients, a sentence each."""
     names = labels(solution)
-    found = [f'{names[i]} is at an end of its range: the rows ask for more of it, or none'
-             for i in certainty.at_limit]
+    curves, full = solution.problem.curves, solution.problem.rows.full
+    found = [f'bollard_thrust {SENSES[side]} comes out as {solution.x[place]:.4g} N where '
+             f'{curves.start[place]:.4g} N were measured: the law does not describe these rows; '
+             'are angles and speeds right?'
+             for side, place in enumerate(curves.top) if place is not None
+             and abs(solution.x[place] - curves.start[place]) > _ODD * full]
+    rms = float(np.sqrt((solution.error**2).mean()))
+    if rms > _ODD * full:
+        found.append(f'the rows are {rms:.3g} N off the law on average, {100.0 * rms / full:.0f} % '
+                     'of the largest thrust: it does not describe them')
+    found += [f'{names[i]} is at an end of its range: the rows ask for more of it, or none'
+              for i in certainty.at_limit]
     found += [f'{names[j]} and {names[i]} go together (correlation {value:+.2f}, above '
               f'{CORRELATED:g} in size): the rows tell their sum better than each'
               for i, j, value in certainty.correlated]

@@ -8,6 +8,7 @@ import time
 
 from geometry_msgs.msg import Wrench
 from nav_msgs.msg import Odometry
+import numpy as np
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -16,7 +17,7 @@ from thrust_allocator.benchmark.ticks import mt2012, smooth_walk
 from thrust_allocator.physics.frames import frd_signs
 from thrust_allocator.ros.qos import INPUT, OUTPUT
 
-GOLDEN = 0.6180339887498949  # its multiples fall evenly into a period
+DRIFT = 1.003  # from the period asked for, so that no phase of the node's own timer is kept
 PATIENCE = 20.0  # longest wait for the first answer [s]
 SETTLING = 0.5  # from the first answer to the measurement [s]
 SAME = 1e-9  # of the command's surge, which tells one command from another [N]
@@ -76,19 +77,24 @@ class Driver(Node):
 
 
 def main(args: Sequence[str]) -> int:
-    """Drive the node in this namespace at a rate [Hz] for a time [s]; print the delays [ns]."""
-    rate, seconds = float(args[1]), float(args[2])
-    rclpy.init(args=[args[0], *args[3:]])
+    """
+    Drive the node in this namespace; print the delays [ns].
+
+    The command line has the rate [Hz], the time [s], and 'regular' or 'random'.
+    """
+    rate, seconds, manner = float(args[1]), float(args[2]), args[3]
+    rclpy.init(args=[args[0], *args[4:]])
     driver, executor = Driver(), SingleThreadedExecutor()
     executor.add_node(driver)
-    begin = time.monotonic()
+    due = begin = time.monotonic()
+    random = np.random.default_rng(1)
 
     def drive_until(enough: float) -> None:
+        nonlocal due
         while time.monotonic() < enough:
-            # Evenly spread over the period, whatever the phase of the node's own timer
-            due = begin + (driver.count + driver.count * GOLDEN % 1.0) / rate
             if time.monotonic() >= due:
                 driver.send()
+                due += (DRIFT if manner == 'regular' else random.uniform(0.0, 2.0)) / rate
             else:
                 executor.spin_once(timeout_sec=min(due, enough) - time.monotonic())
 

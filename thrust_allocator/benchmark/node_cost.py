@@ -16,28 +16,32 @@ import numpy as np
 from thrust_allocator.markdown import table
 
 RATES = (50.0, 100.0, 200.0)  # [Hz]
-EXECUTORS = ('SingleThreadedExecutor', 'EventsExecutor')
-SUBJECTS = ('thrust_allocator', 'relay')
-SECONDS = 8.0  # of one run
-REPEATS = 3  # node, relay, node, relay, ...
+SUBJECTS = ('thrust_allocator', 'relay', 'relay, same tricks')
+CONTROLLERS = (0.2, 0.5, 0.66, 1.0, 1.5)  # times the node's rate
+SECONDS = 6.0  # of one run
+REPEATS = 5  # node, relays, node, relays, ...
 PATIENCE = 40.0  # longest time for the processes to start and stop [s]
 
 
 class Run(NamedTuple):
     """What was measured of one process."""
 
-    processor: float  # time per tick [us]
     load: float  # share of one core
-    tick: np.ndarray  # from the timer's callback to the last publish [us]
-    delay: np.ndarray  # from a command to the setpoints that answer it [us]
+    delay: np.ndarray  # from a command to the setpoints that answer it [ms]
 
 
 class NodeError(Exception):
     """A process that did not do what it was started for."""
 
 
-def run(subject: str, executor: str, rate: float, seconds: float) -> Run:
-    """Start a subject and a driver, on topics that nobody else hears, and measure the subject."""
+def run(subject: str, rate: float, seconds: float, commands: float,
+        manner: str = 'regular') -> Run:
+    """
+    Start a subject and a driver, on topics that nobody else hears, and measure the subject.
+
+    :param rate: of the subject [Hz].
+    :param commands: per second; `manner` is 'regular', or 'random': up to two periods apart.
+    """
     namespace = ['--ros-args', '-r', f'__ns:=/benchmark_{uuid.uuid4().hex}']
     with tempfile.TemporaryDirectory(prefix='thrust_allocator_benchmark_') as logs:
         environment = {**os.environ, 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
@@ -55,29 +59,29 @@ def run(subject: str, executor: str, rate: float, seconds: float) -> Run:
             return started[-1]
 
         try:
-            node = start('subject', subject, executor, '-p', f'rate:={rate}')
-            _check_wiring((executor, rate), set(json.loads(_line(node))))
-            driver = start('driver', str(rate), str(seconds))
+            node = start('subject', subject, '--ros-args', '-p', f'rate:={rate}')
+            _check_wiring(set(json.loads(_line(node))))
+            driver = start('driver', str(commands), str(seconds), manner)
             _line(driver)
             begin, used = time.monotonic(), _processor_time(node.pid)
             delays = json.loads(_line(driver))
             seconds, used = time.monotonic() - begin, _processor_time(node.pid) - used
-            node.terminate()
-            ticks = np.array(json.loads(_line(node))[-round(seconds * rate):]) / 1e3
         finally:
             watchdog.cancel()
             for process in started:
                 process.kill()
                 process.communicate()
-    return Run(used * 1e6 / (seconds * rate), used / seconds, ticks, np.array(delays) / 1e3)
+    return Run(used / seconds, np.array(delays) / 1e6)
 
 
-_WIRING: dict[tuple[str, float], set[str]] = {}  # of the first subject, by executor and rate
+_WIRING: set[str] = set()  # of the first subject
 
 
-def _check_wiring(key: tuple[str, float], wiring: set[str]) -> None:
-    """Compare with the subject before: a relay that does less is none to compare with."""
-    if differing := _WIRING.setdefault(key, wiring) ^ wiring:
+def _check_wiring(wiring: set[str]) -> None:
+    """Compare with the first subject: a relay that does less is none to compare with."""
+    if not _WIRING:
+        _WIRING.update(wiring)
+    if differing := _WIRING ^ wiring:
         raise NodeError(f'only one of the node and its relay has: {", ".join(sorted(differing))}; '
                         'thrust_allocator/benchmark/subject.py must follow the node')
 
@@ -94,47 +98,53 @@ def _processor_time(pid: int) -> float:
     return time.clock_gettime((~pid << 3) | 2)  # its clock id, as clock_getcpuclockid(3) forms it
 
 
-def compare(executor: str, rate: float, seconds: float, repeats: int) -> list[tuple[str, ...]]:
-    """Measure node and relay in turn, and return a row of the table for each."""
+def compare(rate: float, seconds: float, repeats: int) -> list[Sequence[str]]:
+    """Measure node and relays in turn, and return a row of the table for each."""
     runs: dict[str, list[Run]] = {subject: [] for subject in SUBJECTS}
     for _ in range(repeats):
         for subject in SUBJECTS:
-            runs[subject].append(run(subject, executor, rate, seconds))
-    base = np.median([one.processor for one in runs['relay']])
+            runs[subject].append(run(subject, rate, seconds, rate))
+    base = np.array([one.load for one in runs['relay']])
     rows = []
     for subject, measured in runs.items():
-        costs = [one.processor for one in measured]
-        tick, delay = (np.concatenate([getattr(one, name) for one in measured])
-                       for name in ('tick', 'delay'))
-        rows.append((
-            subject, executor, f'{rate:g}', f'{np.median(costs):.0f}',
-            f'{min(costs):.0f} to {max(costs):.0f}', f'{np.median(costs) / base:.2f}',
-            f'{np.median([one.load for one in measured]):.1%}',
-            *(f'{np.quantile(tick, share):.0f}' for share in (0.5, 0.99)),
-            *(f'{np.quantile(delay, share) / 1e3:.1f}' for share in (0.5, 0.99))))
+        loads = np.array([one.load for one in measured])
+        rows.append((subject, f'{rate:g}', f'{np.median(loads):.1%}',
+                     f'{loads.min():.1%} to {loads.max():.1%}', f'{np.median(loads / base):.2f}',
+                     *_quantiles(measured)))
     return rows
 
 
+def answers(rate: float, seconds: float) -> list[Sequence[str]]:
+    """Measure how fast the node answers controllers of other rates, a row of the table for each."""
+    rows = [(f'{share:g} of the rate', f'{rate:g}', *_quantiles([
+        run('thrust_allocator', rate, seconds, share * rate)])) for share in CONTROLLERS]
+    return [*rows, ('at random times', f'{rate:g}', *_quantiles([
+        run('thrust_allocator', rate, seconds, rate, 'random')]))]
+
+
+def _quantiles(measured: Sequence[Run]) -> tuple[str, str]:
+    """Return p50 and p99 of the delay, medians over the runs [ms]."""
+    return tuple(f'{np.median([np.quantile(one.delay, share) for one in measured]):.2f}'
+                 for share in (0.5, 0.99))
+
+
 def report(quick: bool = False) -> None:
-    """Measure, and print the table."""
+    """Measure, and print the tables."""
     print('\n## The node as a process, MT-2012\n')
     if missing := [package for package in ('rclpy', 'nav_msgs') if find_spec(package) is None]:
         print(f'missing: {", ".join(missing)}; the extra is `jazzy`')
         return
-    seconds, repeats = (1.0, 1) if quick else (SECONDS, REPEATS)
-    print(f'Each {repeats} times {seconds:g} s, node and relay in turn. Odometry and command come\n'
-          'from another process at the same rate, at every phase of the period alike. The tick is\n'
-          "from the timer's callback to the last publish; the delay is from a command to the\n"
-          'setpoints that answer it, and half a period of it on average is waiting for the tick.\n',
+    seconds, repeats = (1.5, 1) if quick else (SECONDS, REPEATS)
+    rates = RATES[1:2] if quick else RATES
+    print(f'Each {repeats} times {seconds:g} s, in turn; medians. The driver is another process.\n'
+          'The delay is from publishing a command to receiving the setpoints that answer it.\n',
           flush=True)
-    rows: list[Sequence[str]] = []
     try:
-        for executor in EXECUTORS:
-            for rate in RATES[1:2] if quick else RATES:
-                rows += compare(executor, rate, seconds, repeats)
+        rows = [row for rate in rates for row in compare(rate, seconds, repeats)]
+        print(table(('process', 'rate, Hz', 'CPU, of a core', 'from, to', '/ relay',
+                     'delay p50, ms', 'p99'), rows), flush=True)
+        print('\nThe node with controllers of other rates than its own, once each:\n')
+        rows = [row for rate in rates for row in answers(rate, seconds)]
+        print(table(('commands', 'rate, Hz', 'delay p50, ms', 'p99'), rows), flush=True)
     except NodeError as error:
         print(f'failed: {error}')
-    if rows:
-        print(table(
-            ('process', 'executor', 'rate, Hz', 'CPU per tick, µs', 'from, to', '/ relay',
-             'of a core', 'tick p50, µs', 'p99', 'delay p50, ms', 'p99'), rows), flush=True)

@@ -1,18 +1,19 @@
-"""The process whose cost is measured: our node, or a bare relay with the same wiring."""
+"""The process whose cost is measured: our node, or a relay with the same wiring."""
 
 from collections.abc import Callable, Sequence
 import json
 import sys
-import time
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Vector3Stamped, Wrench
 from nav_msgs.msg import Odometry
+import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.experimental import EventsExecutor
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
@@ -20,124 +21,102 @@ from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
 from thrust_allocator.ros.node import ThrustAllocator
-from thrust_allocator.ros.parameters import Start
 from thrust_allocator.ros.qos import INPUT, OUTPUT
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012
-EXECUTORS = {'SingleThreadedExecutor': SingleThreadedExecutor, 'EventsExecutor': EventsExecutor}
 
 
 class Relay(Node):
     """The least that a node with our node's topics can do: publish what came last."""
 
-    def __init__(self, start: Start, **options: Any) -> None:
-        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True,
-                         parameter_overrides=start.overrides, **options)
-        self.interrupted = False
-        self._command = Wrench()
-        self._velocity = Odometry()
-        self._limits = array_message([('limits', 2), ('thrusters', THRUSTERS)])
-        self._setpoints = array_message([('thrusters', THRUSTERS)])
-        self._limits.data, self._setpoints.data = 2 * THRUSTERS * [0.0], THRUSTERS * [0.0]
-        self._nothing, self._diagnostics = Wrench(), DiagnosticArray()
-        self._publishers_of_a_tick = [
-            self.create_publisher(kind, topic, OUTPUT) for kind, topic in (
-                (Float64MultiArray, 'thrust_limits'), (Float64MultiArray, 'thruster_setpoints'),
-                (Wrench, 'achieved_wrench'), (Wrench, 'unallocated_wrench'))]
-        publisher = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        states = self.create_publisher(JointState, 'thruster_states', OUTPUT)
-        markers = self.create_publisher(MarkerArray, 'thruster_markers', 1)
-        self.create_subscription(Wrench, 'cmd_wrench', self._on_wrench, INPUT)
-        self.create_subscription(Odometry, 'odom', self._on_odometry, INPUT)
-        self.create_subscription(Vector3Stamped, 'current', lambda message: None, INPUT)
+    def __init__(self, tricks: bool) -> None:
+        """
+        Start.
+
+        :param tricks: whether it does as our node does: bytes, a tick on each wrench, no events.
+            Otherwise it is written as the rclpy tutorials would: messages, and a timer.
+        """
+        super().__init__(NODE_NAME, automatically_declare_parameters_from_overrides=True)
+        self._tricks = tricks
+        messages = [array_message([('limits', 2), ('thrusters', THRUSTERS)]),
+                    array_message([('thrusters', THRUSTERS)]), Wrench(), Wrench()]
+        for message, count in zip(messages, (2 * THRUSTERS, THRUSTERS)):
+            message.data = count * [0.0]
+        self._messages = [serialize_message(one) for one in messages] if tricks else messages
+        self._velocity = None
+        self._publishers_of_a_tick = [self._out(kind, topic) for kind, topic in (
+            (Float64MultiArray, 'thrust_limits'), (Float64MultiArray, 'thruster_setpoints'),
+            (Wrench, 'achieved_wrench'), (Wrench, 'unallocated_wrench'))]
+        asked = [self._out(kind, topic) for kind, topic in (
+            (JointState, 'thruster_states'), (MarkerArray, 'thruster_markers'),
+            (Float64MultiArray, 'wrench_limits'))]
+        diagnostics, nothing = self._out(DiagnosticArray, '/diagnostics'), DiagnosticArray()
+        self._in(Odometry, 'odom', self._on_odometry)
+        self._in(Vector3Stamped, 'current', lambda message: None)
+        self._in(Wrench, 'cmd_wrench', self._on_wrench)
         self.create_service(SetBool, '~/enable', lambda request, response: response)
         self.create_guard_condition(lambda: None)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(1.0, lambda: publisher.publish(self._diagnostics), clock=steady)
-        self.create_timer(
-            0.2, lambda: (states.get_subscription_count(), markers.get_subscription_count()),
-            clock=steady)
-        self._timer = self.create_timer(
-            1.0 / self.get_parameter('rate').value, self._tick, clock=steady)
+        self.create_timer(1.0, lambda: diagnostics.publish(nothing), clock=steady)
+        self.create_timer(0.2, lambda: [one.get_subscription_count() for one in asked],
+                          clock=steady)
+        period = (1.5 if tricks else 1.0) / self.get_parameter('rate').value  # [s]
+        self._timer = self.create_timer(period, self._tick, clock=steady)
 
-    def _on_wrench(self, message: Wrench) -> None:
-        self._command = message
+    def _out(self, kind: type, topic: str) -> Publisher:
+        events = PublisherEventCallbacks(use_default_callbacks=not self._tricks)
+        return self.create_publisher(kind, topic, OUTPUT, event_callbacks=events)
 
-    def _on_odometry(self, message: Odometry) -> None:
+    def _in(self, kind: type, topic: str, callback: Callable[[Any], None]) -> None:
+        events = SubscriptionEventCallbacks(use_default_callbacks=not self._tricks)
+        self.create_subscription(
+            kind, topic, callback, INPUT, raw=self._tricks, event_callbacks=events)
+
+    def _on_odometry(self, message: Odometry | bytes) -> None:
         self._velocity = message
 
+    def _on_wrench(self, message: Wrench | bytes) -> None:
+        self._messages[2] = message
+        if self._tricks:
+            self._tick()
+            self._timer.reset()
+
     def _tick(self) -> None:
-        for publisher, message in zip(self._publishers_of_a_tick, (
-                self._limits, self._setpoints, self._command, self._nothing)):
+        for publisher, message in zip(self._publishers_of_a_tick, self._messages):
             publisher.publish(message)
-
-    def stop(self) -> None:
-        """Do nothing: a relay has nothing to bring to rest."""
-
-
-NODES = {'thrust_allocator': ThrustAllocator, 'relay': Relay}
-
-
-class DirectCall:
-    """Stands for a guard condition where there can be none: triggering calls at once."""
-
-    def __init__(self, callback: Callable[[], None]) -> None:
-        self.trigger = callback
-
-
-def timed(kind: type[Node], times: dict[float, list[int]], guards: bool) -> type[Node]:
-    """
-    Return a kind of node that notes how long each call of a timer takes, by period [s, ns].
-
-    :param guards: whether the executor takes guard conditions; EventsExecutor does not (7.1.6).
-    """
-    class Timed(kind):
-        def create_guard_condition(self, callback: Callable[[], None], *arguments: Any) -> Any:
-            if guards:
-                return super().create_guard_condition(callback, *arguments)
-            return DirectCall(callback)
-
-        def create_timer(self, timer_period_sec: float, callback: Callable[[], None],
-                         *arguments: Any, **options: Any) -> Any:
-            noted = times.setdefault(timer_period_sec, [])
-
-            def call() -> None:
-                begin = time.perf_counter_ns()
-                callback()
-                noted.append(time.perf_counter_ns() - begin)
-
-            return super().create_timer(timer_period_sec, call, *arguments, **options)
-
-        def __init__(self, **options: Any) -> None:
-            super().__init__(**options)
-            print(json.dumps(wiring(self)), flush=True)
-
-    return Timed
 
 
 def wiring(node: Node) -> list[str]:
-    """Return what the executor has to watch, and what is published."""
+    """Return what the executor has to watch, and what is published; but for events."""
     within = node.get_namespace()
     names = [f'{kind} {name.removeprefix(within)}' for kind, found in (
         ('publisher', [one.topic_name for one in node.publishers]),
         ('subscription', [one.topic_name for one in node.subscriptions]),
         ('service', [one.service_name for one in node.services])) for name in found]
-    timers = [f'timer of {one.timer_period_ns} ns' for one in node.timers]
-    return sorted([*names, *timers, f'{len(list(node.guards))} guard conditions'])
+    return sorted([*names, f'{len(list(node.timers))} timers',
+                   f'{len(list(node.guards))} guard conditions'])
+
+
+class Allocator(ThrustAllocator):
+    """Our node, which says what it is wired to."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        print(json.dumps(wiring(self)), flush=True)
 
 
 def main(args: Sequence[str]) -> int:
-    """Run the node's own process with another node or executor in it; say at its end how long."""
-    kind, executor, *ros_arguments = args[1:]
-    times: dict[float, list[int]] = {}
-    process.ThrustAllocator = timed(NODES[kind], times, executor != 'EventsExecutor')
-    for name in EXECUTORS:
-        if hasattr(process, name):
-            setattr(process, name, EXECUTORS[executor])
-    status = process.main([args[0], *ros_arguments])
-    print(json.dumps(times[min(times)]), flush=True)
-    return status
+    """Run our node's own process, or a relay, until it is killed."""
+    kind, *ros_arguments = args[1:]
+    if kind == 'thrust_allocator':
+        process.ThrustAllocator = Allocator
+        return process.main([args[0], *ros_arguments])
+    rclpy.init(args=[args[0], *ros_arguments])
+    relay = Relay(tricks=kind != 'relay')
+    print(json.dumps(wiring(relay)), flush=True)
+    rclpy.spin(relay)
+    return 0
 
 
 if __name__ == '__main__':

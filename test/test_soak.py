@@ -18,7 +18,11 @@ FIGURES = re.compile(
 def test_a_short_soak_prints_its_figures():
     """Three seconds give a line of sensible figures, a verdict and the exit status to it."""
     done = run(*SOAK, '--rate', '20', '--minutes', '0.05')
-    figures, verdict = done.stdout.splitlines()
+    figures, *gaps, verdict = done.stdout.splitlines()
+    assert len(gaps) == 5
+    lengths = [float(re.match(r'gap of (\S+) ms at \S+ min: the node ran \d+\.\d ms', gap)[1])
+               for gap in gaps]
+    assert lengths == sorted(lengths, reverse=True)
     match = FIGURES.fullmatch(figures)
     assert match, figures
     assert all(float(figure) > 0.0 for figure in match.groups()), figures

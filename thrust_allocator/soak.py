@@ -22,6 +22,7 @@ from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64MultiArray
 from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros.qos import INPUT, OUTPUT
+from thrust_allocator.stalls import Gaps, Watch
 
 MINUTE = 60.0  # [s]
 PATIENCE = 20.0  # longest wait for the first messages, and for the end of the process [s]
@@ -33,8 +34,8 @@ LONGEST_GAP = 50.0  # between setpoints [ms]
 class Soak(Node):
     """Drives the allocator with a changing wrench and velocity, and keeps count of its answers."""
 
-    def __init__(self, rate: float) -> None:
-        """Send wrench and odometry `rate` times per second [Hz]."""
+    def __init__(self, rate: float, process: int) -> None:
+        """Send wrench and odometry `rate` times per second [Hz] to a node that is a process."""
         super().__init__('soak')
         self.setpoints = 0  # received
         self.gaps = 0  # of them longer than LONGEST_GAP after the one before
@@ -42,6 +43,10 @@ class Soak(Node):
         self.ticks = self.late = 0  # as the node counts them
         self.worst_tick = 0.0  # as the node measures it [ms]
         self._last: float | None = None  # when setpoints came last [s]
+        self.worst = Gaps()
+        self._watch = Watch(process)
+        self._facts = self._watch.read()  # when setpoints came last
+        self._begun = time.monotonic()
         self._wrench, self._odometry = Wrench(), Odometry()
         self._wrench_publisher = self.create_publisher(Wrench, 'cmd_wrench', INPUT)
         self._odometry_publisher = self.create_publisher(Odometry, 'odom', INPUT)
@@ -68,7 +73,10 @@ class Soak(Node):
             gap = 1e3 * (now - self._last)
             self.worst_gap = max(self.worst_gap, gap)
             self.gaps += gap > LONGEST_GAP
-        self._last = now
+        facts = self._watch.read()
+        if self._last is not None and facts and self._facts:
+            self.worst.note(gap, (now - self._begun) / MINUTE, facts.since(self._facts))
+        self._last, self._facts = now, facts
         self.setpoints += 1
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
@@ -115,7 +123,7 @@ def main(args: Sequence[str] | None = None) -> int:
     child = subprocess.Popen([sys.executable, '-m', NODE_NAME, *ros, '--log-level', 'error',
                               '-p', f'rate:={options.rate}'])
     try:
-        complaints = _run(Soak(options.rate), child, options.minutes, interrupts)
+        complaints = _run(Soak(options.rate, child.pid), child, options.minutes, interrupts)
     finally:
         child.terminate()
         try:
@@ -155,6 +163,7 @@ def _run(soak: Soak, child: subprocess.Popen, minutes: float,
         growth = None if first is None else memory - first
         print(soak.report(end / MINUTE, memory, growth), flush=True)
         first = memory if first is None else first
+    print(*soak.worst.lines(), sep='\n', flush=True)
     complaints = []
     if growth is not None and growth >= LARGEST_GROWTH:
         complaints.append(f'memory grew by {growth:.2f} MiB after the first minute')

@@ -18,7 +18,7 @@ from thrust_allocator.markdown import table
 RATES = (50.0, 100.0, 200.0)  # [Hz]
 SUBJECTS = ('thrust_allocator', 'relay', 'relay, same tricks')
 CONTROLLERS = (0.2, 0.5, 0.66, 1.0, 1.5)  # times the node's rate
-SECONDS = 6.0  # of one run
+SECONDS = 4.0  # of one run
 REPEATS = 5  # node, relays, node, relays, ...
 PATIENCE = 40.0  # longest time for the processes to start and stop [s]
 

@@ -14,6 +14,7 @@ from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import AllocationProblem
 from thrust_allocator.study import findings
 from thrust_allocator.study.authority import Authority, HELD
+from thrust_allocator.study.authority_picture import telling
 from thrust_allocator.study.grid import Case, evaluate
 from thrust_allocator.study.manoeuvre import Manoeuvre
 from thrust_allocator.study.sweep import without
@@ -167,10 +168,24 @@ def test_a_cruise_out_of_reach_is_a_gap_and_a_sentence():
 
 
 def test_authority_in_words():
-    """The summary names the manoeuvre and the failure that costs most."""
+    """The verdict names the manoeuvre and the failure that costs most."""
     cases = [Case('mt2012', mt2012(), failed, 0.0) for failed in ((), ('left',), ('up',))]
     speeds = [0.0, 0.5, 0.9, 1.8]
     outcomes = [evaluate(case, Manoeuvre(), speeds) for case in cases]
     assert findings.authority(cases, outcomes, Manoeuvre(), speeds) == (
-        'Authority: 50 N*m of pitch while holding the cruise wrench is within reach intact at '
-        'every speed (at 0 to 0.5 m/s if all controlled DOFs hold); without up at 0 to 0.5 m/s.')
+        '50 N*m of pitch beside the cruise wrench',
+        [('mt2012, intact', 'at every speed', 'at 0 to 0.5 m/s'),
+         ('mt2012, without up', 'at 0 to 0.5 m/s', 'at 0 to 0.5 m/s')])
+
+
+def test_which_failures_are_drawn():
+    """Alike ones once, those that change nothing never, those that cost most first."""
+    span = np.array([[-1.0, 1.0]])
+
+    def ranges(*factors):
+        return np.array([factor * np.repeat(span, 2, 0) for factor in factors])
+
+    intact = ranges(10.0, 8.0)
+    cases = [intact, ranges(10.0, 6.0), intact.copy(), ranges(2.0, 1.0), ranges(10.0, 6.0),
+             np.full_like(intact, np.nan)]
+    assert telling(cases) == [[5], [3], [1, 4]]

@@ -53,7 +53,20 @@ def test_several_files_are_candidate_layouts(undrawn, variant, mt2012, tmp_path)
     assert at_rest['vehicle'] > at_rest['mt2012'] > 200.0
 
 
+def test_failures_of_one_of_several_vehicles(undrawn, variant, mt2012, tmp_path):
+    """VEHICLE:NAME has failed in that one alone, a bare name in all."""
+    assert run(mt2012, variant({}), '--failed', 'mt2012:tunnel,left,vehicle:up', '--output',
+               tmp_path / 'out', *SHORT) == 0
+    fewest = {name: min((row['failed'] for row in rows(tmp_path / 'out' / 'grid.csv')
+                         if row['layout'] == name), key=len) for name in ('mt2012', 'vehicle')}
+    assert fewest == {'mt2012': 'tunnel left', 'vehicle': 'left up'}
+    assert {row['case'] for row in rows(tmp_path / 'out' / 'candidates.csv')} == {
+        'intact', 'worst single failure'}
+
+
 @pytest.mark.parametrize('args, message', [
+    (['--failed', 'mt201:tunnel'], '--failed: mt201 is no vehicle here, must be one of mt2012; did '
+     'you mean mt2012?'),
     (['--failed', 'tunel'], '--failed: tunel is no thruster of mt2012, must be one of down, left, '
      'up, right, tunnel; did you mean tunnel?'),
     (['--thruster', 'bow'], '--thruster: bow is no thruster of mt2012, must be one of down, left, '

@@ -6,6 +6,7 @@ import pytest
 from support import processes
 from support.study import rows, run, SHORT
 from support.vehicles import mt2012 as paper_vehicle
+from thrust_allocator.study import report
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.grid import Case, evaluate
 from thrust_allocator.study.manoeuvre import Manoeuvre
@@ -90,14 +91,31 @@ def process(tmp_path_factory):
     return processes.run('-m', 'thrust_allocator.study', '--output', folder, *SHORT), folder
 
 
-def test_three_lines_end_it(process):
-    """Three lines on stdout, each finding with its driver, and nothing on stderr."""
-    done, _ = process
+def test_two_short_tables_end_it(process):
+    """The verdict on stdout, as the report begins, and nothing on stderr."""
+    done, folder = process
     assert (done.returncode, done.stderr) == (0, '')
-    lines = done.stdout.splitlines()
-    assert len(lines) == 3
-    assert lines[0].startswith('With a driver that delivers the thrust asked for')
-    assert 'Bollard curve' in lines[1] and lines[2].startswith('Authority: 50 N*m of pitch')
+    lines = [re.sub(' +', ' ', line) for line in done.stdout.splitlines()]
+    assert '| mt2012 | thrust as asked | 1.8 | pitch, N*m | -0.29 | -23.90 | -23.76 | smaller |' \
+        in lines
+    assert '| mt2012, intact | at every speed | at 0 m/s |' in lines
+    assert max(map(len, done.stdout.splitlines())) <= 140
+    assert done.stdout.replace('N*m', 'N·m').replace('v^2', 'v²').rstrip() in (
+        folder / 'report.md').read_text('utf-8')
+
+
+def test_every_picture_says_of_what_it_is(tmp_path, monkeypatch):
+    """Vehicle, failures, heading and command where they count; the picture may leave its report."""
+    pending = []
+    monkeypatch.setattr(report.Drawings, 'draw', lambda self, jobs: pending.extend(self._pending))
+    assert run('--output', tmp_path, '--headings', '10,20', '--failed', 'left', *SHORT) == 0
+    settings = {path.name: setting for _, (path, setting, *_), _ in pending}
+    whole = 'mt2012, without left; heading 10° to the current; 40 v² N of surge and 50 N·m of pitch'
+    assert {name for name, setting in settings.items() if setting == whole} == {
+        'allocation_against_speed', 'worth', 'authority'}
+    assert settings['candidates'] == whole.replace('10°', '10, 20°')
+    assert settings['directions'] == 'mt2012'
+    assert settings['giving_way'].startswith('mt2012, without left; at rest; ')
 
 
 def test_the_same_command_writes_the_same_bytes(study, process):

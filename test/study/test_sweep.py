@@ -14,7 +14,7 @@ from thrust_allocator.study.errors import StudyError
 from thrust_allocator.study.grid import Case, evaluate, evaluate_all
 from thrust_allocator.study.manoeuvre import Manoeuvre, paper_test
 from thrust_allocator.study.sweep import (
-    ALLOCATORS, DRIVERS, Drivers, pseudo_inverse, shares, sweep, without)
+    ALLOCATORS, Drivers, pseudo_inverse, shares, sweep, without)
 
 # What the vehicle gets in the paper's test, recomputed: speed; pitch short by [N*m] and heave
 # reached [N] with moving bounds, with Bollard bounds, and by clamped pseudo-inverse
@@ -187,22 +187,24 @@ def test_default_manoeuvre():
         paper_test([without(mt2012(), [one.name for one in mt2012().thrusters])], 1.8)
 
 
-def test_a_headline_names_driver_gain_and_price(allocation):
-    """The sentence tells both sides of the trade, signed, and whose driver it is."""
+def test_a_verdict_names_driver_gain_and_price(allocation):
+    """The rows tell both sides of the trade, signed, and whose driver it is."""
     weights = mt2012().wrench_weights
-    for driver, name in enumerate(DRIVERS.values()):
-        said = findings.worth(allocation, SPEEDS, weights, driver)
-        assert said.startswith(f'With {name}, at 1.8 m/s: moving bounds gain: pitch is off by ')
-        assert 'the price: heave is off by ' in said
-    assert '-0.29 N*m with moving bounds (-23.90 with bounds fixed at Bollard, -23.76 by ' \
-        in findings.worth(allocation, SPEEDS, weights, AS_ASKED)
+    assert findings.worth(allocation, SPEEDS, weights, AS_ASKED) == [
+        ('thrust as asked', '1.8', 'pitch, N*m', '-0.29', '-23.90', '-23.76', 'smaller'),
+        ('thrust as asked', '1.8', 'heave, N', '+37.52', '+19.70', '+19.80', 'larger')]
+    rows = findings.worth(allocation, SPEEDS, weights, BOLLARD_CURVE)
+    assert [(row[0], row[2], row[-1]) for row in rows] == [
+        ('Bollard curve', 'pitch, N*m', 'smaller'), ('Bollard curve', 'heave, N', 'larger')]
+    assert all(len(row) == len(findings.WORTH) for row in rows)
 
 
-def test_a_headline_says_so_if_there_is_no_difference():
+def test_a_verdict_says_so_if_there_is_no_difference():
     """Thrusters of model constant lose nothing, so moving bounds bring nothing."""
     vehicle = Vehicle((thruster('a'), thruster('b')), (1.0, 0, 0, 0, 0, 0))
     one = evaluate(Case('x', vehicle, (), 0.0), Manoeuvre((0.0,) * 6), SPEEDS).allocation
-    assert 'deliver the same' in findings.worth(one, SPEEDS, vehicle.wrench_weights, AS_ASKED)
+    row, = findings.worth(one, SPEEDS, vehicle.wrench_weights, AS_ASKED)
+    assert row == ('thrust as asked', 'any', 'all', *('the same',) * 4)
 
 
 @pytest.mark.parametrize('mask, said', [

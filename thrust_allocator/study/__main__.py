@@ -13,14 +13,13 @@ from thrust_allocator.parameters.file import default_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.vehicle import Vehicle
-from thrust_allocator.study import findings
 from thrust_allocator.study.directions import most_telling
 from thrust_allocator.study.errors import missing, StudyError
 from thrust_allocator.study.grid import Case, evaluate_all, Outcome
 from thrust_allocator.study.manoeuvre import Manoeuvre, paper_test
 from thrust_allocator.study.options import nearest, Parser, parser
 from thrust_allocator.study.progress import Progress
-from thrust_allocator.study.sweep import DRIVERS, without
+from thrust_allocator.study.sweep import without
 from thrust_allocator.study.tables import write_grid
 
 
@@ -52,11 +51,12 @@ def _study(read: Parser, options: argparse.Namespace, command: str) -> int:
         raise StudyError(missing('matplotlib, which draws the pictures', 'plot'))
     vehicles = _vehicles(options.vehicles or [default_parameter_file()], options.node)
     _check_names(read, options, vehicles)
-    vehicles = {name: without(one, options.failed) for name, one in vehicles.items()}
+    gone = {name: _failed_of(name, options.failed) for name in vehicles}
+    vehicles = {name: without(one, gone[name]) for name, one in vehicles.items()}
     manoeuvre = _manoeuvre(options, vehicles)
     cases = [Case(name, vehicle, failed, heading)
              for name, vehicle in vehicles.items() for heading in options.headings
-             for failed in _failures(vehicle, options.failed)]
+             for failed in _failures(vehicle, gone[name])]
     outcomes = evaluate_all(cases, manoeuvre, options.speeds, options.jobs, options.dask,
                             Progress())
     try:
@@ -91,10 +91,14 @@ def _vehicles(files: Sequence[Path], node: str) -> dict[str, Vehicle]:
 
 def _check_names(read: Parser, options: argparse.Namespace,
                  vehicles: dict[str, Vehicle]) -> None:
-    """Refuse names and DOFs that a vehicle does not have."""
+    """Refuse vehicles that are not there, and names and DOFs that a vehicle does not have."""
+    for layout, _ in options.failed:
+        if layout and layout not in vehicles:
+            read.error(f'--failed: {layout} is no vehicle here, must be one of '
+                       f'{", ".join(vehicles)}{nearest(layout, list(vehicles))}')
     for layout, vehicle in vehicles.items():
         names = [thruster.name for thruster in vehicle.thrusters]
-        for option, wanted in (('--failed', options.failed),
+        for option, wanted in (('--failed', _failed_of(layout, options.failed)),
                                ('--thruster', [options.thruster] if options.thruster else [])):
             for name in wanted:
                 if name not in names:
@@ -119,6 +123,11 @@ def _manoeuvre(options: argparse.Namespace, vehicles: dict[str, Vehicle]) -> Man
     return chosen
 
 
+def _failed_of(layout: str, failed: Sequence[tuple[str, str]]) -> tuple[str, ...]:
+    """Return which thrusters of a vehicle have failed: those named for it, and for every one."""
+    return tuple(dict.fromkeys(name for of, name in failed if of in ('', layout)))
+
+
 def _failures(vehicle: Vehicle, failed: tuple[str, ...]) -> list[tuple[str, ...]]:
     """Return the failures to study: those given, and with each single other thruster besides."""
     return [failed] + [(*failed, thruster.name) for thruster in vehicle.thrusters
@@ -136,12 +145,12 @@ def _write(options: argparse.Namespace, command: str, cases: Sequence[Case],
     drawn = min(options.headings, key=abs)
     sections, drawings = [], report.Drawings()
     if len(layouts) > 1 or len(options.headings) > 1:
-        sections += report.candidates_report(drawings, folder, cases, outcomes, speeds)
-    shown: list[tuple[Case, Outcome]] = []
+        sections += report.candidates_report(drawings, folder, cases, outcomes, manoeuvre, speeds)
+    shown = []
     for layout in layouts:
         chosen = [(case, outcome) for case, outcome in zip(cases, outcomes)
                   if case.layout == layout and case.heading == drawn]
-        shown = shown or chosen
+        shown.append(tuple(zip(*chosen)))
         within = f'{layout}/' if len(layouts) > 1 else ''
         place = folder / within
         place.mkdir(exist_ok=True)
@@ -152,12 +161,7 @@ def _write(options: argparse.Namespace, command: str, cases: Sequence[Case],
             drawings, place, *zip(*chosen), manoeuvre, speeds, thruster, within)
     drawings.draw(options.jobs)
     write_grid(folder / 'grid.csv', speeds, cases, outcomes)
-    first, found = shown[0]
-    summary = [findings.worth(found.allocation, speeds, first.vehicle.wrench_weights, d)
-               for d in range(len(DRIVERS))]
-    summary.append(findings.authority(*zip(*shown), manoeuvre, speeds))
-    if len(layouts) > 1:
-        summary = [f'{layouts[0]}: {line}' for line in summary]
+    summary = report.verdict(shown, manoeuvre, speeds)
     report.write_report(folder / 'report.md', command, manoeuvre, sections, summary)
     return summary
 

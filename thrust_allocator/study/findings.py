@@ -1,4 +1,4 @@
-"""Sentences out of numbers: what moving bounds gain and cost, and where authority is lost."""
+"""Words out of numbers: what moving bounds gain and cost, and where authority is lost."""
 
 from collections.abc import Sequence
 
@@ -10,43 +10,43 @@ from thrust_allocator.study.manoeuvre import Manoeuvre, unit
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
 
 PSEUDO_INVERSE, FIXED, MOVING = range(len(ALLOCATORS))
+# Columns of what moving bounds are worth
+WORTH = ('driver', 'v, m/s', 'error of', 'moving bounds', 'fixed bounds', 'pseudo-inverse',
+         'with moving bounds it is')
 NOTHING = 0.005  # a difference that two decimals do not show [N, N*m]
 
 
-def worth(allocation: Sweep, speeds: Sequence[float], weights: Sequence[float],
-          driver: int) -> str:
-    """
-    Return a sentence on what moving bounds gain and cost, at the speed where it is most.
+def setting(case: Case, manoeuvre: Manoeuvre) -> str:
+    """Say of what vehicle, state, heading and command something is told."""
+    return (f'{case.layout}, {named(case.failed)}; heading {case.heading:g}° to the current; '
+            f'{manoeuvre}')
 
-    Errors are weighed as the allocator does, squared and times R; the sentence names the DOF that
-    gains most by that measure and the one that pays most, by delivered minus commanded wrench.
+
+def worth(allocation: Sweep, speeds: Sequence[float], weights: Sequence[float],
+          driver: int) -> list[tuple[str, ...]]:
+    """
+    Return rows under WORTH: what moving bounds gain and cost, at the speed where it is most.
+
+    Errors, delivered minus commanded, are weighed as the allocator does, squared and times R; the
+    rows name the DOF that gains most by that measure and the one that pays most, the larger of the
+    two first.
 
     :param weights: R, (6,).
-    :param driver: index into DRIVERS, named by the sentence.
+    :param driver: index into DRIVERS, named by the rows.
     """
     errors = allocation.errors[:, :, driver]
     change = (errors[:, FIXED]**2 - errors[:, MOVING]**2) * weights  # > 0: moving bounds gain
     at = int(np.abs(change.sum(axis=1)).argmax())
     seen = np.abs(errors[at, FIXED] - errors[at, MOVING]) > NOTHING
-    gain, price = int(change[at].argmax()), int(change[at].argmin())
-    gains = bool(seen[gain] and change[at, gain] > 0.0)
-    costs = bool(seen[price] and change[at, price] < 0.0)
-    name = list(DRIVERS.values())[driver]
-    if not (gains or costs):
-        return f'With {name}, bounds fixed at Bollard and moving ones deliver the same.'
-
-    def three(dof: int) -> str:
-        moving, fixed, inverse = errors[at, [MOVING, FIXED, PSEUDO_INVERSE], dof]
-        return (f'{DOFS[dof]} is off by {moving:+.2f} {unit(dof)} with moving bounds '
-                f'({fixed:+.2f} with bounds fixed at Bollard, {inverse:+.2f} by pseudo-inverse)')
-
-    parts = [('moving bounds gain: ', gain)] if gains else []
-    if costs:
-        parts.append(('the price: ' if gains else 'moving bounds cost: ', price))
-    if gains and costs and change[at].sum() < 0.0:
-        parts = [('moving bounds cost: ', price), ('they gain: ', gain)]
-    said = '; '.join(what + three(dof) for what, dof in parts)
-    return f'With {name}, at {speeds[at]:g} m/s: {said}.'
+    ends = sorted({int(change[at].argmax()), int(change[at].argmin())},
+                  key=lambda dof: -abs(change[at, dof]))
+    name = list(DRIVERS)[driver]
+    rows = [(name, f'{speeds[at]:g}', f'{DOFS[dof]}, {unit(dof)}',
+             *(f'{errors[at, allocator, dof]:+.2f}'
+               for allocator in (MOVING, FIXED, PSEUDO_INVERSE)),
+             'smaller' if change[at, dof] > 0.0 else 'larger')
+            for dof in ends if seen[dof] and change[at, dof]]
+    return rows or [(name, 'any', 'all', *('the same',) * 3, 'the same')]
 
 
 def at_speeds(mask: np.ndarray, speeds: Sequence[float]) -> str:
@@ -84,8 +84,13 @@ def reach(case: Case, outcome: Outcome, manoeuvre: Manoeuvre, dof: int,
 
 
 def authority(cases: Sequence[Case], outcomes: Sequence[Outcome], manoeuvre: Manoeuvre,
-              speeds: Sequence[float]) -> str:
-    """Return a sentence on authority, intact and with the thruster failed that costs most."""
+              speeds: Sequence[float]) -> tuple[str, list[tuple[str, ...]]]:
+    """
+    Return what is asked of authority, and where it is within reach.
+
+    :return: the wrench in words, and rows of a case and the speeds for each of HELD: intact, and
+        with the thruster failed that costs most.
+    """
     def amount(one: Outcome) -> tuple[int, float]:
         mask = within_reach(one, manoeuvre, dof)
         spans = np.nan_to_num(one.authority[:, :, dof, 1] - one.authority[:, :, dof, 0])
@@ -95,14 +100,10 @@ def authority(cases: Sequence[Case], outcomes: Sequence[Outcome], manoeuvre: Man
         cases[0].vehicle.wrench_weights) if weight][:1]
     dof = dofs[0]
     worst = min(range(len(cases)), key=lambda i: amount(outcomes[i]))
-    command = manoeuvre.wrench[dof]
-    said = []
-    for i in dict.fromkeys((0, worst)):
-        heavier, everything = reach(cases[i], outcomes[i], manoeuvre, dof, speeds)
-        same = '' if heavier == everything else f' ({everything} if all controlled DOFs hold)'
-        said.append(f'{named(cases[i].failed)} {heavier}{same}')
-    return (f'Authority: {command:g} {unit(dof)} of {DOFS[dof]} while holding the cruise wrench is '
-            f'within reach {"; ".join(said)}.')
+    return (f'{manoeuvre.wrench[dof]:g} {unit(dof)} of {DOFS[dof]} beside the cruise wrench',
+            [(f'{cases[i].layout}, {named(cases[i].failed)}',
+              *reach(cases[i], outcomes[i], manoeuvre, dof, speeds))
+             for i in dict.fromkeys((0, worst))])
 
 
 def gaps(cases: Sequence[Case], outcomes: Sequence[Outcome],

@@ -96,6 +96,12 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name.strip() for name in text.split(',') if name.strip()))
 
 
+def _failed(text: str) -> tuple[tuple[str, str], ...]:
+    """Read 'left,mt2012:up' as (vehicle or '' for each, thruster)."""
+    parts = (name.rpartition(':') for name in _names(text))
+    return tuple((layout.strip(), thruster.strip()) for layout, _, thruster in parts)
+
+
 def _count(text: str) -> int:
     if not re.fullmatch('[0-9]{1,4}', text) or int(text) < 1:
         raise argparse.ArgumentTypeError(f'{text!r} must be a whole number of 1 or more')
@@ -121,8 +127,9 @@ def parser() -> Parser:
     one.add_argument('--drag', type=_drag, metavar='VALUE',
                      help=f'surge force per speed squared that holds the speed, {DRAG:g}; or '
                      'DOF=VALUE,... for surge, sway and heave [N*s^2/m^2]')
-    one.add_argument('--failed', default=(), type=_names, metavar='NAME,...',
-                     help='thrusters that have failed throughout')
+    one.add_argument('--failed', default=(), type=_failed, metavar='NAME,...',
+                     help='thrusters that have failed throughout; VEHICLE:NAME of one of several '
+                     'vehicles alone')
     one.add_argument('--headings', default='0', metavar='LIST',
                      type=_numbers(360.0, 'heading in degrees', 1),
                      help='of the bow, to starboard from straight into the current; the pictures '

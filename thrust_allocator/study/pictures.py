@@ -9,30 +9,22 @@ from matplotlib.ticker import MaxNLocator
 import numpy as np
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.vehicle import Thruster, Vehicle
-from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import Directions
-from thrust_allocator.study.findings import named
-from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import unit
 from thrust_allocator.study.saturation import Saturation
 from thrust_allocator.study.style import (
-    BOUNDS, finish, line, look, over_speed, panels, save)
+    BOUNDS, dotted, finish, line, look, over_speed, panels, save)
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, Sweep
 
 SPEED = 'speed through the water (m/s)'
 WORTH_SHOWN = 0.5  # a DOF is drawn if an error gets larger than this [N, N*m]
-NEAR = 1e-3  # curves closer than this share of the largest value look the same
 WORTH_LINES = (  # in the order of ALLOCATORS; the first lies under the second where they agree
     {'color': '#E69F00', 'linestyle': '-', 'lw': 4.0, 'alpha': 0.75},
     {'color': '#0072B2', 'linestyle': '--'}, {'color': '#000000', 'linestyle': '-'})
 
 
-def _dots(dof: int) -> str:
-    return unit(dof).replace('*', '·')
-
-
-def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep,
-                    shares: dict[int, dict[str, np.ndarray]]) -> None:
+def draw_allocation(path: Path, setting: str, vehicle: Vehicle, speeds: Sequence[float],
+                    allocation: Sweep, shares: dict[int, dict[str, np.ndarray]]) -> None:
     """Draw each thruster's thrust inside its moving bounds, and who gives what share of DOFs."""
     columns = 3
     used = len(vehicle.thrusters) + len(shares)
@@ -45,7 +37,7 @@ def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], alloc
               Patch(color=BOUNDS, label='moving bounds')]
     legend += [Line2D([], [], label=name, **style) for name, style in styles.items()]
     with look():
-        figure, axes = panels(rows, columns, 2.25, 'Allocation against speed', legend,
+        figure, axes = panels(rows, columns, 2.25, 'Allocation against speed', legend, setting,
                               sharex=True)
         largest = 1.1 * np.abs([vehicle.bollard_thrust, *allocation.limits]).max()
         for i, (one, thruster) in enumerate(zip(axes.ravel(), vehicle.thrusters)):
@@ -61,7 +53,8 @@ def draw_allocation(path: Path, vehicle: Vehicle, speeds: Sequence[float], alloc
         save(figure, path)
 
 
-def draw_worth(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation: Sweep) -> None:
+def draw_worth(path: Path, setting: str, vehicle: Vehicle, speeds: Sequence[float],
+               allocation: Sweep) -> None:
     """Draw delivered minus commanded wrench by allocator, for each driver and telling DOF."""
     errors = allocation.errors
     dofs = [dof for dof in np.flatnonzero(vehicle.wrench_weights)
@@ -70,56 +63,24 @@ def draw_worth(path: Path, vehicle: Vehicle, speeds: Sequence[float], allocation
     legend = [Line2D([], [], label=label, **style)
               for label, style in zip(ALLOCATORS.values(), WORTH_LINES)]
     with look():
-        figure, axes = panels(len(dofs), len(DRIVERS), 2.1, 'Delivered minus commanded wrench',
-                              legend, sharex=True, sharey='row')
+        figure, axes = panels(len(dofs), len(DRIVERS), 2.1,
+                              'Error of the wrench: delivered minus commanded', legend, setting,
+                              sharex=True, sharey='row')
         for row, dof in zip(axes, dofs):
             for d, (one, driver) in enumerate(zip(row, DRIVERS)):
                 for a, style in enumerate(WORTH_LINES):
                     one.plot(speeds, errors[:, a, d, dof], **style)
-                over_speed(one, speeds, f'{DOFS[dof]}, driver: {driver}',
-                           f'{DOFS[dof]} ({_dots(dof)})' if d == 0 else '')
+                over_speed(one, speeds, f'{DOFS[dof]} error, driver: {driver}',
+                           f'{DOFS[dof]} error ({dotted(unit(dof))})' if d == 0 else '')
         finish(axes, axes.size, SPEED)
         save(figure, path)
 
 
-def draw_authority(path: Path, speeds: Sequence[float], cases: Sequence[Case],
-                   outcomes: Sequence[Outcome]) -> None:
-    """
-    Draw the range of every controlled DOF, intact and for each failure; gaps stay gaps.
-
-    A failure that changes nothing in a panel, and a thin curve that is the thick one, would only
-    hide what is below them: they are left out.
-    """
-    dofs = np.flatnonzero(cases[0].vehicle.wrench_weights)
-    kinds = {'heavier': {'lw': 2.0}, 'all': {'lw': 0.9}}
-    legend = [Line2D([], [], label=named(case.failed) + ', and what is not drawn apart' * (i == 0),
-                     **line(i)) for i, case in enumerate(cases)]
-    legend += [Line2D([], [], color='#777777', label=f'{"thin" if kind == "all" else "thick"}: '
-                      f'{HELD[kind]}', **width) for kind, width in kinds.items()]
-    columns = min(2, len(dofs))
-    with look():
-        figure, axes = panels(-(-len(dofs) // columns), columns, 2.6, 'Authority against speed',
-                              legend, sharex=True)
-        for one, dof in zip(axes.ravel(), dofs):
-            whole = outcomes[0].authority[:, :, dof]
-            near = NEAR * (np.nanmax(np.abs(whole)) if np.isfinite(whole).any() else 1.0)
-            for i, outcome in enumerate(outcomes):
-                thick, thin = found = np.moveaxis(outcome.authority[:, :, dof], 1, 0)
-                if i and np.allclose(np.moveaxis(found, 0, 1), whole, 0.0, near, equal_nan=True):
-                    continue
-                one.plot(speeds, thick, **{**line(i), **kinds['heavier']})
-                if not np.allclose(thin, thick, 0.0, near, equal_nan=True):
-                    one.plot(speeds, thin, **{**line(i), **kinds['all']})
-            over_speed(one, speeds, str(DOFS[dof]), f'{DOFS[dof]} ({_dots(dof)})')
-        finish(axes, len(dofs), SPEED)
-        save(figure, path)
-
-
-def draw_directions(path: Path, thruster: Thruster, found: Directions) -> None:
+def draw_directions(path: Path, setting: str, thruster: Thruster, found: Directions) -> None:
     """Draw the limits of one thruster as contours over angle of attack and speed."""
     with look():
         figure, axes = panels(1, 2, 3.2, f'Bounds in every direction: {thruster.name}', [],
-                              sharey=True)
+                              setting, sharey=True)
         for one, side, name in zip(axes[0], (1, 0), ('forward', 'reverse')):
             limits = np.abs(found.limits[..., side])
             most = max(abs(thruster.bollard_thrust[side]), limits.max()) or 1.0
@@ -141,12 +102,13 @@ def draw_directions(path: Path, thruster: Thruster, found: Directions) -> None:
         save(figure, path)
 
 
-def draw_giving_way(path: Path, found: Saturation) -> None:
+def draw_giving_way(path: Path, setting: str, found: Saturation) -> None:
     """Draw which share of the commands keeps how much of its direction and of its length."""
     styles = {name: line(i) for i, name in enumerate(found.angles)}
     legend = [Line2D([], [], label=name, **style) for name, style in styles.items()]
     with look():
-        figure, axes = panels(1, 2, 3.0, 'What gives way beyond reach', legend, sharey=True)
+        figure, axes = panels(1, 2, 3.0, 'What gives way beyond reach', legend, setting,
+                              sharey=True)
         for one, values, label in ((axes[0, 0], found.angles, 'direction error (°)'),
                                    (axes[0, 1], found.lost, 'lost of the command (%)')):
             for name, style in styles.items():
@@ -159,22 +121,23 @@ def draw_giving_way(path: Path, found: Saturation) -> None:
         save(figure, path)
 
 
-def draw_candidates(path: Path, speeds: Sequence[float], dofs: Sequence[int],
+def draw_candidates(path: Path, setting: str, speeds: Sequence[float], dofs: Sequence[int],
                     series: dict[str, tuple[np.ndarray, np.ndarray]]) -> None:
     """Draw the authority that every series has both ways, intact and at its worst failure."""
     columns = min(2, len(dofs))
     widths = ({'lw': 2.0}, {'lw': 0.9})
     legend = [Line2D([], [], label=name, **line(i)) for i, name in enumerate(series)]
     legend += [Line2D([], [], color='#777777', label=label, **width) for label, width in zip(
-        ('thick: intact', 'thin: worst single failure'), widths)]
+        ('thick: as it stands', 'thin: worst further failure'), widths)]
     with look():
         figure, axes = panels(-(-len(dofs) // columns), columns, 2.6,
-                              'Authority both ways, by candidate', legend, sharex=True)
+                              'Authority both ways, by candidate', legend, setting,
+                              sharex=True)
         for one, dof in zip(axes.ravel(), dofs):
             for i, pair in enumerate(series.values()):
                 for values, width in zip(pair, widths):
                     one.plot(speeds, values[:, dof], **{**line(i), **width})
-            over_speed(one, speeds, DOFS[dof], f'{DOFS[dof]} ({_dots(dof)})')
+            over_speed(one, speeds, DOFS[dof], f'{DOFS[dof]} ({dotted(unit(dof))})')
         finish(axes, len(dofs), SPEED)
         save(figure, path)
 

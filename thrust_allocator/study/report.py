@@ -8,13 +8,14 @@ import numpy as np
 from thrust_allocator.markdown import table
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.vehicle import Thruster
-from thrust_allocator.study import findings, pictures, tables
+from thrust_allocator.study import authority_picture, findings, pictures, tables
 from thrust_allocator.study.authority import HELD
 from thrust_allocator.study.directions import directions
 from thrust_allocator.study.grid import Case, Outcome
 from thrust_allocator.study.manoeuvre import Manoeuvre, unit
 from thrust_allocator.study.saturation import (
     reach_of, saturation, saturation_table, TIMES_AUTHORITY)
+from thrust_allocator.study.style import dotted
 from thrust_allocator.study.sweep import ALLOCATORS, DRIVERS, shares, Sweep, without
 
 ROWS = 19  # of a table over speed, at most
@@ -53,18 +54,23 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
     who = {dof: shares(vehicle, moving, dof) for dof in main_dofs(manoeuvre, case)}
     tables.write_allocation(folder / 'allocation_against_speed.csv', vehicle, speeds, allocation,
                             who)
-    drawings.add(pictures.draw_allocation, folder / 'allocation_against_speed', vehicle, speeds,
-                 allocation, who)
+    setting = dotted(findings.setting(case, manoeuvre))
+    drawings.add(pictures.draw_allocation, folder / 'allocation_against_speed', setting, vehicle,
+                 speeds, allocation, who)
     tables.write_worth(folder / 'worth.csv', speeds, allocation)
-    drawings.add(pictures.draw_worth, folder / 'worth', vehicle, speeds, allocation)
+    drawings.add(pictures.draw_worth, folder / 'worth', setting, vehicle, speeds, allocation)
     tables.write_authority(folder / 'authority.csv', speeds, cases, outcomes)
-    drawings.add(pictures.draw_authority, folder / 'authority', speeds, cases, outcomes)
+    drawings.add(authority_picture.draw_authority, folder / 'authority', setting, speeds, cases,
+                 outcomes)
     found = directions(thruster, float(np.abs(speeds).max()) or 1.0)
     tables.write_directions(folder / 'directions.csv', found)
-    drawings.add(pictures.draw_directions, folder / 'directions', thruster, found)
+    drawings.add(pictures.draw_directions, folder / 'directions', case.layout, thruster,
+                 found)
     beyond = saturation(vehicle, reach_of(vehicle), COMMANDS)
     tables.write_giving_way(folder / 'giving_way.csv', beyond)
-    drawings.add(pictures.draw_giving_way, folder / 'giving_way', beyond)
+    drawings.add(pictures.draw_giving_way, folder / 'giving_way',
+                 f'{case.layout}, {findings.named(case.failed)}; at rest; {COMMANDS} commands up '
+                 f'to {TIMES_AUTHORITY:g} times its authority', beyond)
 
     state = f' ({findings.named(case.failed)})' if case.failed else ''
     weights = case.vehicle.wrench_weights
@@ -78,13 +84,13 @@ def layout_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
                  'allocator are passed through the thrust that is really available at that speed, '
                  'for two kinds of motor driver.')]
     for d in range(len(DRIVERS)):
-        lines += [findings.worth(allocation, speeds, weights, d), '',
-                  *_worth_table(allocation, speeds, weights, d), '']
+        lines += [*_worth_table(allocation, speeds, weights, d), '']
     lines += [
         *_figure(within, 'authority', 'Authority against speed',
-                 'The largest and smallest wrench within reach of each controlled DOF, with no and '
-                 f'with each single thruster failed: thick while the {HELD["heavier"]} the cruise '
-                 f'wrench and the others are free, thin while {HELD["all"]} it.'),
+                 'The largest and smallest wrench within reach of each controlled DOF: the band as '
+                 'it stands, lines with one thruster more failed, those that cost most there. '
+                 f'Left while the {HELD["heavier"]} the cruise wrench and the others are free, '
+                 f'right while {HELD["all"]} it.'),
         *_reach_tables(cases, outcomes, manoeuvre, speeds),
         *(f'- {sentence}' for sentence in findings.gaps(cases, outcomes, speeds)), '',
         *_figure(within, 'directions', f'Bounds in every direction: {thruster.name}',
@@ -105,7 +111,8 @@ def main_dofs(manoeuvre: Manoeuvre, case: Case) -> list[int]:
 
 
 def candidates_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
-                      outcomes: Sequence[Outcome], speeds: Sequence[float]) -> list[str]:
+                      outcomes: Sequence[Outcome], manoeuvre: Manoeuvre,
+                      speeds: Sequence[float]) -> list[str]:
     """
     Set layouts side by side, or the headings of a single one, and return what the report says.
 
@@ -115,17 +122,24 @@ def candidates_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
     layouts = list(dict.fromkeys(case.layout for case in cases))
     several = len(layouts) > 1
     groups: dict[str, tuple[list[np.ndarray], list[np.ndarray]]] = {}
-    fewest = min(len(case.failed) for case in cases)
+    fewest = {name: min(len(case.failed) for case in cases if case.layout == name)
+              for name in layouts}
     for case, outcome in zip(cases, outcomes):
         name = case.layout if several else f'heading {case.heading:g}°'
         both_ways = np.minimum(outcome.authority[:, 0, :, 1], -outcome.authority[:, 0, :, 0])
-        groups.setdefault(name, ([], []))[len(case.failed) > fewest].append(both_ways)
+        groups.setdefault(name, ([], []))[
+            len(case.failed) > fewest[case.layout]].append(both_ways)
     series = {name: tuple(np.minimum.reduce(some or [np.full((len(speeds), 6), np.nan)])
                           for some in pair) for name, pair in groups.items()}
     dofs = [dof for dof in range(6)
             if any(case.vehicle.wrench_weights[dof] > 0.0 for case in cases)]
     tables.write_candidates(folder / 'candidates.csv', speeds, series)
-    drawings.add(pictures.draw_candidates, folder / 'candidates', speeds, dofs, series)
+    states = dict.fromkeys(f'{case.layout}, {findings.named(case.failed)}' for case in cases
+                           if len(case.failed) == fewest[case.layout])
+    headings = ', '.join(f'{heading:g}' for heading in sorted({case.heading for case in cases}))
+    drawings.add(pictures.draw_candidates, folder / 'candidates',
+                 dotted(f'{"; ".join(states)}; heading {headings}° to the current; {manoeuvre}'),
+                 speeds, dofs, series)
     what = 'The least authority of each layout over all headings' if several else \
         'The authority at each heading to the current'
     return ['## Side by side', '', *_figure(
@@ -135,11 +149,28 @@ def candidates_report(drawings: Drawings, folder: Path, cases: Sequence[Case],
         'a gap where the cruise wrench cannot be held.')]
 
 
+def verdict(shown: Sequence[tuple[Sequence[Case], Sequence[Outcome]]], manoeuvre: Manoeuvre,
+            speeds: Sequence[float]) -> list[str]:
+    """
+    Return the lines of what comes first: what moving bounds are worth, and what stays in reach.
+
+    :param shown: of each vehicle the cases and outcomes that its pictures show, intact first.
+    """
+    rows = [(cases[0].layout, *row) for cases, outcomes in shown for d in range(len(DRIVERS))
+            for row in findings.worth(outcomes[0].allocation, speeds,
+                                      cases[0].vehicle.wrench_weights, d)]
+    found = [findings.authority(*one, manoeuvre, speeds) for one in shown]
+    return [f'Delivered minus commanded wrench where moving bounds change it most: {manoeuvre}', '',
+            *table(('vehicle', *findings.WORTH), rows).splitlines(), '',
+            f'Within reach: {found[0][0]}, while', '',
+            *table(('', *HELD.values()), [row for _, some in found for row in some]).splitlines()]
+
+
 def write_report(path: Path, command: str, manoeuvre: Manoeuvre, sections: Sequence[str],
                  summary: Sequence[str]) -> None:
     """Write report.md: what was asked, what came out, how to read it."""
     text = [
-        '# A study of thrust allocation', '', *(f'- {line}' for line in summary), '',
+        '# A study of thrust allocation', '', *summary, '',
         f'The command at every speed v: {manoeuvre}. {FRAME} A heading is to starboard from '
         'straight into the current.', '',
         *sections,
@@ -153,7 +184,7 @@ def write_report(path: Path, command: str, manoeuvre: Manoeuvre, sections: Seque
         '- The share of a wrench is in percent of what the setpoints add up to.',
         '- `grid.csv` has every point of the study: layouts, headings, failures, speeds.', '',
         'Made by:', '', '```sh', command, '```', '']
-    path.write_text('\n'.join(text).replace('N*m', 'N·m').replace('v^2', 'v²'), encoding='utf-8')
+    path.write_text(dotted('\n'.join(text)), encoding='utf-8')
 
 
 def _figure(folder: str, name: str, title: str, sentence: str) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import contextmanager
 from pathlib import Path
+import textwrap
 
 import matplotlib
 from matplotlib.artist import Artist
@@ -20,6 +21,7 @@ LINES = (('#000000', '-'), ('#0072B2', '--'), ('#D55E00', '-.'), ('#009E73', ':'
          ('#56B4E9', (0, (8, 2))))
 _ROW = 0.24  # height of a row of the legend [in]
 _TITLE = 0.34  # and of the picture's title [in]
+_SETTING = 0.2, 118  # and of a line below it [in], and its letters
 _HANDLE, _LETTER = 0.75, 0.075  # width of a line of the legend, and of a letter [in]
 
 
@@ -27,6 +29,11 @@ def line(index: int) -> dict:
     """Return colour and dashes of the line `index`; after seven the dashes move on by one."""
     colour = LINES[index % len(LINES)][0]
     return {'color': colour, 'linestyle': LINES[(index + index // len(LINES)) % len(LINES)][1]}
+
+
+def dotted(text: str) -> str:
+    """Return a text with units as print has them."""
+    return text.replace('N*m', 'N·m').replace('v^2', 'v²')
 
 
 @contextmanager
@@ -42,26 +49,30 @@ def look():
 
 
 def panels(rows: int, columns: int, row_height: float, title: str, legend: Sequence[Artist],
-           **sharing: object) -> tuple[Figure, np.ndarray]:
+           setting: str = '', **sharing: object) -> tuple[Figure, np.ndarray]:
     """
     Return a figure and its axes (rows, columns), under a title and a legend that covers no data.
 
     :param row_height: of a row of panels [in].
     :param legend: what the legend shows, each with a label.
+    :param setting: what the picture is of, below the title: a picture may leave its report.
     """
+    below = textwrap.wrap(setting, _SETTING[1])
+    legend_top = _TITLE + _SETTING[0] * len(below)
     longest = max((len(artist.get_label()) for artist in legend), default=0)
     legend_columns = max(1, min(len(legend), int(WIDTH / (_HANDLE + _LETTER * longest))))
     legend_rows = -(-len(legend) // legend_columns)
-    head = _TITLE + _ROW * legend_rows + (0.1 if legend else 0.0)
+    head = legend_top + _ROW * legend_rows + (0.1 if legend else 0.0)
     height = rows * row_height + head
     figure = Figure(figsize=(WIDTH, height), layout='constrained')
     figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - head / height), h_pad=0.06)
     axes = figure.subplots(rows, columns, squeeze=False, **sharing)
     figure.text(0.5, 1.0 - 0.07 / height, title, ha='center', va='top', fontsize=12)
+    figure.text(0.5, 1.0 - _TITLE / height, '\n'.join(below), ha='center', va='top', fontsize=10)
     if legend:
         figure.legend(handles=list(legend), loc='upper center', ncol=legend_columns,
                       frameon=False, handlelength=3.4, columnspacing=1.6,
-                      bbox_to_anchor=(0.5, 1.0 - _TITLE / height))
+                      bbox_to_anchor=(0.5, 1.0 - legend_top / height))
     return figure, axes
 
 

@@ -1,22 +1,17 @@
 """Every rule for a vehicle's parameters, and the message that a broken one gets."""
 
-from functools import cache
 import math
 import re
 
 from hypothesis import example, given, settings, strategies as st
 import pytest
+from support.parameter_values import DOWN, message, PROPELLER, TUNNEL, UP, vehicle
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.definition import BY_AUTHORITY
-from thrust_allocator.parameters.file import default_parameter_file, read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
 
-UP, DOWN, TUNNEL = 'thrusters.up.', 'thrusters.down.', 'thrusters.tunnel.'
 DOFS = ('surge', 'sway', 'heave', 'roll', 'pitch', 'yaw')
 NAMES = 'a list of one or more different names such as tunnel or FL_2 ([A-Za-z][A-Za-z0-9_]*)'
-PROPELLER = {DOWN + 'propeller.diameter': 0.2, DOWN + 'propeller.max_revolutions': 15.13,
-             DOWN + 'propeller.thrust_slope': 0.34}
-
 # What is allowed: text of the message, outermost values allowed, values next to them not
 POSITIVE = '(0, 1000000]', [5e-324, 1e6], [0.0]
 ALMOST_1 = math.nextafter(1.0, 0.0)
@@ -50,7 +45,7 @@ LISTS = {  # text of the message, a good list, and each item's ends
     'fallback_velocity': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
     'wrench_origin': (POINT, [1.0, 1.0, 1.0], [(-1e6, 1e6)] * 3),
 }
-FLAGS = ['start_enabled', UP + 'enabled']
+FLAGS = ['start_enabled', 'tick_on_wrench', UP + 'enabled']
 WORDS = {'vehicle_frame': 'one of frd, flu', 'message_frame': 'one of frd, flu',
          UP + 'model': 'one of propeller, tunnel, fin, constant',
          UP + 'angle_law': 'one of paper, cosine'}
@@ -62,28 +57,6 @@ ALLOWED = {
     **WORDS,
     **dict.fromkeys(FLAGS, 'true or false'),
 }
-
-
-@cache
-def good_vehicle():
-    """Return MT-2012, but C of the lower thruster from propeller data, the right one constant."""
-    values = read_parameter_file(default_parameter_file())
-    for name in ('down.speed_loss', 'right.speed_loss', 'right.opposed_loss'):
-        del values[f'thrusters.{name}']
-    return values | PROPELLER | {'thrusters.right.model': 'constant'}
-
-
-def vehicle(changes=(), without=()):
-    """Return a good vehicle's values with some changed and some left out."""
-    values = good_vehicle() | dict(changes)
-    return {name: value for name, value in values.items() if name not in without}
-
-
-def message(changes=(), without=()):
-    """Return the message with which the changed vehicle is refused."""
-    with pytest.raises(ParameterError) as caught:
-        read_parameters(vehicle(changes, without))
-    return str(caught.value)
 
 
 def cases(table):
@@ -235,57 +208,6 @@ def test_a_coefficient_of_another_model_is_refused(name):
                         message({name: 1.0}))
 
 
-FIN = {f'thrusters.fin.{name}': value for name, value in {
-    'model': 'fin', 'position': [-1.5, 0.0, 0.0], 'direction': [0.0, 0.6, 0.8],
-    'chord': [2.0, 0.0, 0.0], 'fin_area': 0.01, 'lift_slope': 3.0, 'max_deflection': 0.5,
-    'cut_in_speed': 0.5}.items()}
-FIN['thruster_names'] = ['down', 'left', 'up', 'right', 'tunnel', 'fin']
-
-
-def test_the_defaults_of_a_fin():
-    """It may turn as fast as it will, weighs 1, and has nothing left astern."""
-    values = read_parameters(vehicle(FIN)).values
-    own = {name: value for name, value in values.items() if name.startswith('thrusters.fin.')}
-    assert {name: own[name] for name in own if name not in FIN} == {
-        'thrusters.fin.astern_share': 0.0, 'thrusters.fin.max_rate': 0.0,
-        'thrusters.fin.weight': 1.0, 'thrusters.fin.enabled': True,
-        'thrusters.fin.effectiveness': 1.0}
-
-
-@pytest.mark.parametrize('name, value, said', [
-    ('bollard_thrust', [-1.0, 1.0], 'is given, must be left out: a fin has no thrust at rest; its '
-     'limits follow from fin_area, lift_slope and max_deflection'),
-    ('cutoff', 0.1, 'is given, must be left out: a fin has no thrust at rest that it could be a '
-     'share of; cut_in_speed takes it out'),
-    ('torque_ratio', 0.1, 'is given, must be left out: a fin has no propeller'),
-    ('chord', [1.0, 1.0, 0.0],
-     'is [1.0, 1.0, 0.0], must be at right angles to direction, [0.0, 0.6, 0.8]'),
-    ('chord', [0.0, 0.0, 0.0], 'is [0.0, 0.0, 0.0], must be [x, y, z], each a number in '
-     '[-1000000, 1000000], not all 0'),
-    ('fin_area', 0.0, 'is 0.0, must be a number in (0, 1000000]'),
-    ('fin_area', 1e6, 'is 1000000.0, must be such that the lift at 1 m/s is at most 1e+06 N/rad'),
-    ('lift_slope', 0.0, 'is 0.0, must be a number in (0, 1000000]'),
-    ('max_deflection', 0.0, 'is 0.0, must be a number in (0, 1.570796]'),
-    ('max_deflection', 1.571, 'is 1.571, must be a number in (0, 1.570796]'),
-    ('cut_in_speed', 0.0, 'is 0.0, must be a number in (0, 1000000]'),
-    ('astern_share', 1.1, 'is 1.1, must be a number in [0, 1]'),
-    ('max_rate', -1.0, 'is -1.0, must be a number in [0, 1000000]'),
-    ('chords', 1.0, 'is no parameter here; did you mean thrusters.fin.chord?')],
-    ids=lambda value: str(value)[:20])
-def test_what_a_fin_cannot_have(name, value, said):
-    """Each is refused by name, what only other models have with the words for what it has."""
-    assert message(FIN | {f'thrusters.fin.{name}': value}) == f'thrusters.fin.{name}: {said}'
-
-
-@pytest.mark.parametrize('name', ['chord', 'fin_area', 'lift_slope', 'max_deflection',
-                                  'cut_in_speed'])
-def test_what_a_fin_must_have(name):
-    """A fin without one of them is refused; without bollard_thrust it is not."""
-    name = f'thrusters.fin.{name}'
-    assert message({key: value for key, value in FIN.items() if key != name}).startswith(
-        f'{name}: is missing, must be ')
-
-
 def test_a_loss_in_reverse_that_is_scaled_is_a_warning():
     """Nobody has measured it; a thruster that cannot reverse has none."""
     assert read_parameters(vehicle()).warnings == (
@@ -314,7 +236,8 @@ def test_the_defaults_are_those_documented():
     parameters = read_parameters(required)
     assert {name: value for name, value in parameters.values.items() if value is not None} == {
         **required, 'rate': 50.0, 'water_density': 1025.0, 'vehicle_frame': 'frd',
-        'message_frame': 'flu', 'start_enabled': True, 'wrench_timeout': 0.5,
+        'message_frame': 'flu', 'tick_on_wrench': True, 'start_enabled': True,
+        'wrench_timeout': 0.5,
         'odometry_timeout': 0.5, 'current_timeout': 10.0,
         'velocity_time_constant': 0.0, 'fallback_velocity': (0.0, 0.0, 0.0),
         'wrench_origin': (0.0, 0.0, 0.0), 'nominal_voltage': 0.0, 'voltage_exponent': 1.2,

@@ -1,10 +1,12 @@
 """A storm of parameter changes while wrenches flow: the setpoints never leave their limits."""
 
+import gc
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
 from numpy.testing import assert_allclose
+import pytest
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
@@ -112,13 +114,26 @@ class Storm:
         return len(self.sent) == CHANGES and all(answer.done() for _, _, answer in self.sent)
 
 
-def test_storm(start, variant):
+def problems():
+    """Return how many allocation problems are in memory, with no collection of garbage."""
+    return sum(isinstance(one, AllocationProblem) for one in gc.get_objects())
+
+
+@pytest.fixture
+def no_collection():
+    """Collect no garbage meanwhile: what is replaced must be freed by itself."""
+    gc.disable()
+    yield
+    gc.enable()
+
+
+def test_storm(no_collection, start, variant):
     """1,000 changes, half invalid, at 100 Hz: right answers, setpoints inside, a healthy end."""
     node, peer = start(file=variant(RUDDER))
     statuses = []
     peer.create_subscription(DiagnosticArray, '/diagnostics', statuses.append, 100)
     peer.on_tick = lambda: None
-    storm = Storm(peer)
+    storm, before = Storm(peer), problems()
     deadline = time.monotonic() + PATIENCE
     while not storm.is_over:
         assert time.monotonic() < deadline
@@ -127,6 +142,7 @@ def test_storm(start, variant):
         results = getattr(answer.result(), 'results', None) or [answer.result().result]
         assert all(one.successful for one in results) is valid, (change, results)
         assert valid or results[0].reason
+    assert problems() <= before + 1, 'all that were replaced are freed'
     ticks = peer.ticks
     assert len(ticks) > 100 and all(inside_limits(tick) for tick in ticks)
     assert sum(np.any(tick['thruster_setpoints']) for tick in ticks) > 100

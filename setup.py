@@ -24,7 +24,7 @@ setup(
     extras_require={
         'jazzy': jazzy,
         'test': ['pytest', 'hypothesis', 'daqp', 'matplotlib', 'dask[distributed]', 'flake8',
-                 'rosbags'],
+                 'pytest-xdist', 'rosbags'],
         'plot': ['matplotlib'],
         'replay': ['rosbags', 'matplotlib'],
         'cluster': ['dask[distributed]'],

@@ -17,7 +17,7 @@ def test_a_process_that_works_and_touches_memory():
         pages[::4096] = bytes(len(pages[::4096]))
     found = watch.read().since(before)
     ran = 1e3 * (time.thread_time() - clock)
-    assert 45.0 <= found.ran <= ran + 5.0
+    assert 45.0 <= found.ran <= ran + 20.0
     assert found.faults > 0 and found.waited >= 0.0 and found.observer_waited >= 0.0
     watch.close()
 

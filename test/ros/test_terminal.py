@@ -11,7 +11,7 @@ import termios
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from support.paths import ROOT
-from support.processes import AMONG_PROCESSES, NODE
+from support.processes import AMONG_PROCESSES, hear_hangups, NODE
 
 SMALLEST_PIPE = 4096  # [bytes]
 CHANGES = 120  # of a parameter, each a line of the log: more than the pipe holds
@@ -39,6 +39,10 @@ def test_the_terminal_is_gone(mission, launch):
     """A lost SSH session: SIGHUP to a node whose terminal can be written to no more."""
     from support.mission import Run
 
+    def take_terminal():
+        hear_hangups()
+        fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
     ours, theirs = pty.openpty()
     processes = []
 
@@ -46,7 +50,7 @@ def test_the_terminal_is_gone(mission, launch):
         processes.append(subprocess.Popen(
             [sys.executable, *map(str, arguments)], cwd=ROOT, env={**os.environ, **AMONG_PROCESSES},
             stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0)))
+            preexec_fn=take_terminal))
         return processes[-1]
 
     try:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 import os
+import signal
 import subprocess
 import sys
 
@@ -21,7 +22,13 @@ def start(*arguments: object, **environment: str) -> subprocess.Popen:
     """Start `python *arguments`; what it says is to be read from its pipes."""
     return subprocess.Popen(
         [sys.executable, *map(str, arguments)], cwd=ROOT, text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, env={**os.environ, **AMONG_PROCESSES, **environment})
+        stderr=subprocess.PIPE, env={**os.environ, **AMONG_PROCESSES, **environment},
+        preexec_fn=hear_hangups)
+
+
+def hear_hangups() -> None:
+    """Undo a SIGHUP that is ignored, as it is in what a CI or nohup has started."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def end(process: subprocess.Popen) -> None:

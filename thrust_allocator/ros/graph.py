@@ -7,6 +7,8 @@ from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from thrust_allocator.ros.qos import OF_EVERY_NODE
 
+UNKNOWN = '_NODE_NAME_UNKNOWN_'  # what rmw calls whom the graph does not know
+
 
 def publishers(node: Node, topic: str) -> list[str]:
     """Return the full names of the nodes that publish on a topic, one for each publisher."""
@@ -59,6 +61,8 @@ def _of(node: Node, ends: Sequence[TopicEndpointInfo]) -> TopicEndpointInfo | No
 
 
 def _name(end: TopicEndpointInfo) -> str:
+    if end.node_name.startswith(UNKNOWN):
+        return 'one that is no node of ROS, or not known yet'
     return f'{end.node_namespace.rstrip("/")}/{end.node_name}'
 
 

@@ -1,5 +1,7 @@
 """The ROS 2 node: takes messages in, asks for a tick, and sends it out."""
 
+from collections.abc import Callable
+from copy import copy
 import time
 from typing import Any
 
@@ -10,6 +12,7 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool
 from thrust_allocator.inputs import Inputs
@@ -99,16 +102,19 @@ class ThrustAllocator(Node):
         return self._allocator.vehicle
 
     # Each event that rclpy watches unless told otherwise costs time at every wait; the reporter
-    # looks once a second for what they would tell
+    # looks once a second for what they would tell. And rclpy writes what a user overrides into the
+    # profile that it is given, which others share
 
-    def create_publisher(self, *arguments: Any, **options: Any) -> Publisher:
-        """Create a publisher without rclpy's default events."""
-        return super().create_publisher(*arguments, **{
+    def create_publisher(self, kind: type, topic: str, qos: QoSProfile | int,
+                         **options: Any) -> Publisher:
+        """Create a publisher without rclpy's default events, with a profile of its own."""
+        return super().create_publisher(kind, topic, copy(qos), **{
             'event_callbacks': PublisherEventCallbacks(use_default_callbacks=False), **options})
 
-    def create_subscription(self, *arguments: Any, **options: Any) -> Subscription:
-        """Create a subscription without rclpy's default events."""
-        return super().create_subscription(*arguments, **{
+    def create_subscription(self, kind: type, topic: str, callback: Callable[[Any], None],
+                            qos: QoSProfile | int, **options: Any) -> Subscription:
+        """Create a subscription without rclpy's default events, with a profile of its own."""
+        return super().create_subscription(kind, topic, callback, copy(qos), **{
             'event_callbacks': SubscriptionEventCallbacks(use_default_callbacks=False), **options})
 
     # Parameters

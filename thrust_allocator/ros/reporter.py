@@ -106,7 +106,8 @@ class Reporter:
                 if len(names) > 1 else '', now)
         before, self._mismatches = self._mismatches, mismatches(self._node, self._hints)
         for topic in {**before, **self._mismatches}:
-            self._findings.note(f'ends of {topic}', self._mismatches.get(topic, ''), now)
+            twice = topic in before and topic in self._mismatches  # the first has no name yet
+            self._findings.note(f'ends of {topic}', self._mismatches[topic] if twice else '', now)
 
     def _frames(self) -> str:
         velocity = self._inputs.velocity

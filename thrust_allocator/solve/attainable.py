@@ -55,7 +55,7 @@ class AttainableSet:
         rank = int(np.sum(singular > NO_SERVICE * singular[0])) if singular[0] > 0.0 else 0
         self._root, self._range = root, left[:, :rank]
         # tau = pinv(S B) S f gives the part of f in the range of B_D, exactly
-        self._thrusts = np.ascontiguousarray(
+        self._per_wrench = np.ascontiguousarray(
             right[:rank].T / singular[:rank] @ (left[:, :rank].T * root))
         p = matrix.shape[1]
         self._inside = bytes(p * [1] + p * [0])  # above the lower limit and not above the upper one
@@ -87,7 +87,7 @@ class AttainableSet:
         :param wrench: f, (6,); only the DOFs in D count [N, N*m].
         :param limits: (2, p), row 0 lower (<= 0), row 1 upper (>= 0) [N].
         """
-        if (self._thrusts.dot(wrench) > limits).tobytes() == self._inside or not self.faces:
+        if (self._per_wrench.dot(wrench) > limits).tobytes() == self._inside or not self.faces:
             return 1.0
         ways = self._normals.dot(wrench)
         ways[ways <= ALONG_FACE * ways.max()] = 0.0

@@ -35,7 +35,7 @@ class Compromise:
         """
         self._problem, self._keeping, self._power_limit = problem, keeping, power_limit
         root = np.sqrt(np.array(vehicle.wrench_weights))
-        self._thrusts = np.linalg.pinv(  # that a command would take if nothing limited them
+        self._per_wrench = np.linalg.pinv(  # that a command would take if nothing limited them
             root[:, np.newaxis] * vehicle.configuration_matrix, rcond=NO_SERVICE) * root
         if keeping:
             weights = np.zeros(6)
@@ -65,7 +65,7 @@ class Compromise:
         if self._power_limit and power is not None:
             allocation = within_power(
                 self._problem, command, allocation, power(), self._power_limit,
-                float(np.abs(self._thrusts @ command).max() / np.abs(limits).max()))
+                float(np.abs(self._per_wrench @ command).max() / np.abs(limits).max()))
         elif command is wrench:
             return allocation
         return allocation._replace(unallocated=wrench - allocation.achieved, reach=reach,

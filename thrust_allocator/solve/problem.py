@@ -74,9 +74,9 @@ class AllocationProblem:
             np.linalg.qr(root(matrix, thrust_weights, wrench_weights), mode='r'))  # L^T, (p, p)
         singular = np.linalg.svd(self._factor, compute_uv=False)
         self._active_set = ActiveSet(matrix, thrust_weights, wrench_weights)
-        self._thrusts = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
+        self._unwhiten = np.linalg.inv(self._factor)  # L^-T: tau = L^-T w
         # q = gradient @ f
-        self._gradient = np.ascontiguousarray(-self._thrusts.T @ (matrix.T * wrench_weights))
+        self._gradient = np.ascontiguousarray(-self._unwhiten.T @ (matrix.T * wrench_weights))
 
         self._rounding = ROUNDING * len(thrust_weights)
         self._settings = {
@@ -90,7 +90,7 @@ class AllocationProblem:
 
     def _new_judge(self) -> Solver:
         """Return an OSQP that only tells whether its start is the optimum."""
-        return Solver(self._thrusts, max_iter=1, adaptive_rho=0, **self._settings)
+        return Solver(self._unwhiten, max_iter=1, adaptive_rho=0, **self._settings)
 
     def for_vehicle(self, vehicle: Vehicle) -> 'AllocationProblem':
         """Return the problem of the same vehicle after a change: this one if it serves still."""
@@ -131,11 +131,11 @@ class AllocationProblem:
             return refined, held, 'solved', 1
         # rho adapts by iterations and never by the clock, so that a run repeats bit for bit
         solver = Solver(
-            self._thrusts, max_iter=MAX_ITERATIONS, adaptive_rho=1, **self._settings)
+            self._unwhiten, max_iter=MAX_ITERATIONS, adaptive_rho=1, **self._settings)
         status, iterations = solver.solve(*question)
         if status == 'solved':
             whitened, multipliers = solver.optimum
-            wanted = self._thrusts @ whitened + multipliers / self._thrust_weights
+            wanted = self._unwhiten @ whitened + multipliers / self._thrust_weights
             thrusts = np.clip(wanted, *limits)
             at_bound = (wanted > limits[1]).view(np.int8) - (wanted < limits[0]).view(np.int8)
         return thrusts, at_bound, status, iterations

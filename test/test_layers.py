@@ -12,8 +12,8 @@ from support.vehicles import PAPER_TEST
 PACKAGE = ROOT / 'thrust_allocator'
 # A module imports nothing that stands after its own folder, or its own name where it lies flat
 ORDER = ('markdown', 'physics', 'solve', 'parameters', 'supply', 'inputs', 'setpoints', 'schedule',
-         'tick', 'findings', 'shortfall', 'diagnosis', '__init__', 'ros', 'import_vehicle', 'study',
-         'fit', 'replay', 'benchmark', 'stalls', 'soak', 'demo', '__main__')
+         'tick', 'diagnosis', '__init__', 'ros', 'import_vehicle', 'study', 'fit', 'replay',
+         'benchmark', 'soak', 'demo', '__main__')
 WITH_ROS = {'ros', 'benchmark', 'soak', 'demo', '__main__'}
 ROS = re.compile(r'(rcl\w*|ament_\w+|ros(?!bags)\w+|launch\w*|\w+_(msgs|srvs|interfaces))(\..*)?')
 LOOK_UP = ('parameters/file.py', 'ament_index_python')  # of the default file, if it is there

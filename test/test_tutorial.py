@@ -11,14 +11,14 @@ from numpy.testing import assert_allclose
 import pytest
 from rclpy.parameter import Parameter
 from support.paths import ROOT
-from thrust_allocator.findings import Level
+from thrust_allocator.diagnosis.findings import Level
 from support.vehicles import propeller
 from thrust_allocator.parameters.build import load_vehicle
 from thrust_allocator.parameters.check import read_parameters
 from thrust_allocator.parameters.file import read_parameter_file
 from thrust_allocator.parameters.types import ParameterError
-from thrust_allocator.ros.command_line import read_command_line
 from thrust_allocator.physics.models import Tunnel
+from thrust_allocator.ros.command_line import read_command_line
 import yaml
 
 TUTORIAL = (ROOT / 'doc/tutorial.md').read_text('utf-8')

@@ -20,9 +20,9 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64MultiArray
+from thrust_allocator.benchmark.stalls import Gaps, Watch
 from thrust_allocator.parameters.file import NODE_NAME
 from thrust_allocator.ros.qos import INPUT, OUTPUT
-from thrust_allocator.stalls import Gaps, Watch
 
 MINUTE = 60.0  # [s]
 PATIENCE = 20.0  # longest wait for the first messages, and for the end of the process [s]

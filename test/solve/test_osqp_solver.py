@@ -3,8 +3,8 @@
 import numpy as np
 import osqp
 import pytest
-import thrust_allocator.solve.osqp_solver
 from thrust_allocator.solve.osqp_solver import Solver
+import thrust_allocator.solve.osqp_solver
 
 SETTINGS = {'verbose': False, 'scaling': 0, 'polishing': False, 'eps_abs': 1e-7, 'eps_rel': 1e-14,
             'max_iter': 4000, 'check_termination': 1, 'check_dualgap': False, 'adaptive_rho': 1}

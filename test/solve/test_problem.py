@@ -12,8 +12,8 @@ from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.models import Constant
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.active_set import ActiveSet
-import thrust_allocator.solve.problem as allocation_module
 from thrust_allocator.solve.problem import AllocationProblem
+import thrust_allocator.solve.problem as allocation_module
 
 
 def random_ticks(seed: int, vehicles: int, ticks: int):

@@ -7,8 +7,8 @@ from support.vehicles import mt2012, paper_test
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.solve.active_set import ActiveSet
 from thrust_allocator.solve.osqp_solver import Solver
-import thrust_allocator.solve.problem as problem_module
 from thrust_allocator.solve.problem import AllocationProblem
+import thrust_allocator.solve.problem as problem_module
 
 WRENCH, VELOCITY = paper_test(0.9)
 

@@ -16,7 +16,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from std_srvs.srv import SetBool
 from support.optimum import daqp_optimum
 from support.peer import Peer, TYPES_OUT
-from thrust_allocator.findings import AFTERWARDS
+from thrust_allocator.diagnosis.findings import AFTERWARDS
 from thrust_allocator.physics.bounds import ThrustBounds
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.node import ThrustAllocator

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from thrust_allocator.diagnosis.shortfall import Yardstick
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.replay.run import Run
-from thrust_allocator.shortfall import Yardstick
 
 
 class Arrivals:

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 from std_msgs.msg import Header
-from thrust_allocator.diagnosis import note_tick, Tally, thrusters_off
-from thrust_allocator.findings import Findings
+from thrust_allocator.diagnosis.findings import Findings
+from thrust_allocator.diagnosis.shortfall import Yardstick
+from thrust_allocator.diagnosis.tally import note_tick, Tally, thrusters_off
 from thrust_allocator.inputs import age_in_seconds, Inputs
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.ros.graph import mismatches, publishers
 from thrust_allocator.ros.messages import status_message
 from thrust_allocator.ros.qos import OVERRIDABLE
-from thrust_allocator.shortfall import Yardstick
 from thrust_allocator.tick import Tick
 
 ALONE = ('cmd_wrench', 'thruster_setpoints')  # topics that one node should publish on

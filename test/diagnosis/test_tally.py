@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.log import Log
 from support.vehicles import mt2012
-from thrust_allocator.diagnosis import allocation_figures, note_tick, Tally, thrusters_off
-from thrust_allocator.findings import Findings, Level
+from thrust_allocator.diagnosis.findings import Findings, Level
+from thrust_allocator.diagnosis.tally import allocation_figures, note_tick, Tally, thrusters_off
 from thrust_allocator.inputs import age_in_seconds, Inputs
 from thrust_allocator.solve.problem import Allocation
 from thrust_allocator.tick import Allocator, Settings, Tick

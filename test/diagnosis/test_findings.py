@@ -1,7 +1,7 @@
 """Findings: when one begins, when it is over, and how often it is logged."""
 
 from support.log import Log
-from thrust_allocator.findings import Findings, Level
+from thrust_allocator.diagnosis.findings import Findings, Level
 
 SECOND = 10**9  # [ns]
 

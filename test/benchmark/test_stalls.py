@@ -3,7 +3,7 @@
 import os
 import time
 
-from thrust_allocator.stalls import Facts, Gaps, Watch
+from thrust_allocator.benchmark.stalls import Facts, Gaps, Watch
 
 NONE = Facts(0.0, 0.0, 0, 0, 0, 0.0, 0.0, 0.0)
 

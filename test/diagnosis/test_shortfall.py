@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.vehicles import described, mt2012, random_vehicle, thruster
+from thrust_allocator.diagnosis.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.inputs import Inputs
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.models import Constant
 from thrust_allocator.physics.vehicle import Vehicle
-from thrust_allocator.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.tick import Allocator, Settings
 
 BLUEROV = described('bluerov2_heavy')

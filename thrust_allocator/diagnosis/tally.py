@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from thrust_allocator.findings import Findings, Level
+from thrust_allocator.diagnosis.findings import Findings, Level
+from thrust_allocator.diagnosis.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.physics.power import PredictedPower
 from thrust_allocator.physics.vehicle import Vehicle
-from thrust_allocator.shortfall import Allocated, shortfall, Yardstick
 from thrust_allocator.solve.problem import Allocation
 from thrust_allocator.tick import Tick
 

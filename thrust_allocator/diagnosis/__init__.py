@@ -1,0 +1,1 @@
+"""What a pilot should know: findings as they come and go, what is missing and why, figures."""

@@ -8,6 +8,7 @@ import pytest
 from support.paths import MT2012, ROOT
 from support.processes import run
 from support.vehicles import PAPER_TEST
+from support.without_ros import HIDE, ROS
 
 PACKAGE = ROOT / 'thrust_allocator'
 # A module imports nothing that stands after its own folder, or its own name where it lies flat
@@ -15,7 +16,6 @@ ORDER = ('markdown', 'physics', 'solve', 'parameters', 'supply', 'inputs', 'setp
          'tick', 'diagnosis', '__init__', 'ros', 'import_vehicle', 'study', 'fit', 'replay',
          'benchmark', 'soak', 'demo', '__main__')
 WITH_ROS = {'ros', 'benchmark', 'soak', 'demo', '__main__'}
-ROS = re.compile(r'(rcl\w*|ament_\w+|ros(?!bags)\w+|launch\w*|\w+_(msgs|srvs|interfaces))(\..*)?')
 LOOK_UP = ('parameters/file.py', 'ament_index_python')  # of the default file, if it is there
 FILES = sorted(PACKAGE.rglob('*.py'))
 
@@ -60,18 +60,6 @@ def test_ros_stays_on_the_upper_floors():
                 and (str(file.relative_to(PACKAGE)), name.split('.')[0]) != LOOK_UP}
     assert 'ros' in with_ros
     assert with_ros <= WITH_ROS
-
-
-HIDE = f"""
-import importlib, re, sys
-
-class Hidden:
-    def find_spec(self, name, path=None, target=None):
-        if re.fullmatch({ROS.pattern!r}, name):
-            raise ModuleNotFoundError(f'No module named {{name!r}}', name=name)
-
-sys.meta_path.insert(0, Hidden())
-"""
 
 
 def test_everything_else_runs_without_ros():

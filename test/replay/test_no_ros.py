@@ -2,14 +2,13 @@
 
 from support.bags import mission, write
 from support.processes import run
+from support.without_ros import HIDE
 
 
 def test_it_needs_no_ros(mt2012, tmp_path):
     """It replays a bag, pictures and all, with every module of ROS hidden."""
     bag = write(tmp_path / 'bag', mission(0.5))
-    done = run('-c', 'import sys\n'
-               'sys.modules.update(dict.fromkeys(("rclpy", "ament_index_python", "std_msgs")))\n'
-               'from thrust_allocator.__main__ import main\n'
+    done = run('-c', HIDE + 'from thrust_allocator.__main__ import main\n'
                f'sys.exit(main(["x", "replay", {str(bag)!r}, {str(mt2012)!r}, "--output", '
                f'{str(tmp_path / "out")!r}]))')
     assert done.returncode == 0 and 'mt2012: ' in done.stdout, done.stderr

@@ -12,7 +12,13 @@ STOPS, TOGETHER = 20, 5  # nodes in all, and at a time
 
 
 def test_twenty_stops_in_a_row(send_out):
-    """Each of 20 nodes, stopped in full action by any signal, has zeros last and status 0."""
+    """
+    Each of 20 nodes, stopped in full action by any signal, has zeros last and status 0.
+
+    SIGALRM may end one after its zeros: Fast DDS 2.14 as built for PyPI waits for ever, now and
+    then, if other nodes leave at the same time.
+    """
+    statuses = []
     for first in range(0, STOPS, TOGETHER):
         runs = [send_out(*NODE) for _ in range(TOGETHER)]
         for run in runs:
@@ -21,7 +27,10 @@ def test_twenty_stops_in_a_row(send_out):
             run.process.send_signal(SIGNALS[i % len(SIGNALS)])
         for run in runs:
             status, stderr = run.end()
-            assert (status, stderr.count('[ERROR]'), stderr.count('Traceback')) == (0, 0, 0), stderr
+            assert (stderr.count('[ERROR]'), stderr.count('Traceback')) == (0, 0), stderr
+            statuses.append(status)
+    assert statuses.count(0) >= STOPS - 1
+    assert set(statuses) <= {0, -signal.SIGALRM}
 
 
 def test_the_last_zeros_are_waited_for(send_out):
@@ -53,6 +62,21 @@ sys.exit(process.main())
     status, stderr = run.end()
     said = [line for line in stderr.splitlines() if not line.startswith(('[WARN]', '[INFO]'))]
     assert (status, said) == (0, ['acknowledged thruster_setpoints True', 'lingered (0.1,)'])
+
+
+def test_a_middleware_that_does_not_end(send_out):
+    """After the zeros, what hangs below Python has its time, and is then ended by SIGALRM."""
+    run = send_out('-c', """
+import ctypes, sys
+from thrust_allocator.ros import node, process
+
+process.PATIENCE = 1
+node.ThrustAllocator.destroy_node = lambda _: ctypes.PyDLL(None).pause()
+sys.exit(process.main())
+""")
+    run.wait_until_allocating()
+    run.process.send_signal(signal.SIGTERM)
+    assert run.end(gone=False)[0] == -signal.SIGALRM
 
 
 def test_more_signals_during_the_stop(send_out):

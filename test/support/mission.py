@@ -106,18 +106,20 @@ class Run:
 
         self.mission.wait_until(allocating, 'setpoints other than zero')
 
-    def end(self, zeros=True):
+    def end(self, zeros=True, gone=True):
         """
         Wait for the end of the process and of its publishers, and check the last setpoints.
 
         :param zeros: whether zeros must come last, and came only then.
+        :param gone: whether the process takes leave of the others.
         :return: exit status and the text on stderr.
         """
         self.mission.wait_until(lambda: self.process.poll() is not None, 'the end')
         _, stderr = self.process.communicate()
-        self.mission.wait_until(
-            lambda: not self.mission.count_publishers(f'{self.namespace}/thruster_setpoints'),
-            'the end of its publishers')
+        if gone:
+            self.mission.wait_until(
+                lambda: not self.mission.count_publishers(f'{self.namespace}/thruster_setpoints'),
+                'the end of its publishers')
         if zeros:
             self.mission.wait_until(lambda: not any(self.setpoints[-1]), 'zeros as the last ones')
             assert any(self.setpoints[-2]), 'there were zeros before the end'

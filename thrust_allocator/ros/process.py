@@ -5,6 +5,7 @@ from contextlib import ExitStack
 import gc
 from pathlib import Path
 import re
+import signal
 import sys
 import tempfile
 import warnings
@@ -23,6 +24,8 @@ from thrust_allocator.ros.ending import ending_signals
 from thrust_allocator.ros.node import ThrustAllocator
 from thrust_allocator.ros.parameters import Start
 
+PATIENCE = 5  # [s] with a middleware that does not end, then SIGALRM ends the process
+
 
 def main(args: Sequence[str] | None = None) -> int:
     """
@@ -31,7 +34,7 @@ def main(args: Sequence[str] | None = None) -> int:
     :param args: the command line, program name first; None for the process's own.
     :return: the exit status: 0 after a signal, 1 for a mistake in the parameters or on the command
         line, or if the context was shut down from outside, so that no last zeros could be
-        published.
+        published. A middleware that does not end is given PATIENCE, then SIGALRM ends the process.
     """
     args = list(sys.argv if args is None else args)
     with ending_signals() as signals, unblocked() as consoles:
@@ -71,6 +74,10 @@ def _run(node: ThrustAllocator, signals: Sequence[int]) -> int:
     finally:
         if alive := rclpy.ok():
             node.stop()
+        # Some builds of Fast DDS 2.14 wait for ever if others leave at that moment (its issue 6513)
+        signal.alarm(PATIENCE)
+        node.destroy_node()
+        signal.alarm(0)
         rclpy.try_shutdown()
     if not alive:
         print(f'{NODE_NAME}: the ROS context was shut down from outside: the last setpoints stand',

@@ -189,12 +189,10 @@ class Inputs:
         return through_water
 
     def _is_sound(self, topic: str, values: np.ndarray, largest: float) -> bool:
-        if not np.isfinite(values).all():
-            self.dropped[f'{topic} not finite'] += 1
-        elif np.abs(values).max() > largest:
-            self.dropped[f'{topic} beyond {largest:g}'] += 1
-        else:
+        if all(-largest <= value <= largest for value in values.tolist()):  # not so for NaN
             return True
+        cause = f'beyond {largest:g}' if np.isfinite(values).all() else 'not finite'
+        self.dropped[f'{topic} {cause}'] += 1
         return False
 
 

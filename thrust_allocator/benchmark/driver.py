@@ -20,6 +20,8 @@ from thrust_allocator.ros.qos import INPUT, OUTPUT
 DRIFT = 1.003  # from the period asked for, so that no phase of the node's own timer is kept
 PATIENCE = 20.0  # longest wait for the first answer [s]
 SETTLING = 0.5  # from the first answer to the measurement [s]
+GAPS = {  # between one command and the next, in periods of the rate asked for
+    'regular': (DRIFT, DRIFT), 'random': (0.5, 1.5), 'bursts': (0.0, 2.0)}
 SAME = 1e-9  # of the command's surge, which tells one command from another [N]
 
 
@@ -80,9 +82,9 @@ def main(args: Sequence[str]) -> int:
     """
     Drive the node in this namespace; print the delays [ns].
 
-    The command line has the rate [Hz], the time [s], and 'regular' or 'random'.
+    The command line has the rate [Hz], the time [s], and a key of GAPS.
     """
-    rate, seconds, manner = float(args[1]), float(args[2]), args[3]
+    rate, seconds, gaps = float(args[1]), float(args[2]), GAPS[args[3]]
     rclpy.init(args=[args[0], *args[4:]])
     driver, executor = Driver(), SingleThreadedExecutor()
     executor.add_node(driver)
@@ -94,7 +96,7 @@ def main(args: Sequence[str]) -> int:
         while time.monotonic() < enough:
             if time.monotonic() >= due:
                 driver.send()
-                due += (DRIFT if manner == 'regular' else random.uniform(0.0, 2.0)) / rate
+                due += random.uniform(*gaps) / rate
             else:
                 executor.spin_once(timeout_sec=min(due, enough) - time.monotonic())
 

@@ -40,7 +40,7 @@ def run(subject: str, rate: float, seconds: float, commands: float,
     Start a subject and a driver, on topics that nobody else hears, and measure the subject.
 
     :param rate: of the subject [Hz].
-    :param commands: per second; `manner` is 'regular', or 'random': up to two periods apart.
+    :param commands: per second; `manner` is a key of the driver's GAPS.
     """
     namespace = ['--ros-args', '-r', f'__ns:=/benchmark_{uuid.uuid4().hex}']
     with tempfile.TemporaryDirectory(prefix='thrust_allocator_benchmark_') as logs:
@@ -118,8 +118,10 @@ def answers(rate: float, seconds: float) -> list[Sequence[str]]:
     """Measure how fast the node answers controllers of other rates, a row of the table for each."""
     rows = [(f'{share:g} of the rate', f'{rate:g}', *_quantiles([
         run('thrust_allocator', rate, seconds, share * rate)])) for share in CONTROLLERS]
-    return [*rows, ('at random times', f'{rate:g}', *_quantiles([
-        run('thrust_allocator', rate, seconds, rate, 'random')]))]
+    return rows + [(words, f'{rate:g}', *_quantiles([
+        run('thrust_allocator', rate, seconds, rate, manner)])) for words, manner in (
+            ('at random times, half a period apart or more', 'random'),
+            ('at random times', 'bursts'))]
 
 
 def _quantiles(measured: Sequence[Run]) -> tuple[str, str]:
@@ -143,7 +145,8 @@ def report(quick: bool = False) -> None:
         rows = [row for rate in rates for row in compare(rate, seconds, repeats)]
         print(table(('process', 'rate, Hz', 'CPU, of a core', 'from, to', '/ relay',
                      'delay p50, ms', 'p99'), rows), flush=True)
-        print('\nThe node with controllers of other rates than its own, once each:\n')
+        print('\nThe node with controllers of other rates than its own, once each. A command within\n'
+              'half a period of the last that was answered has to wait until that is over.\n')
         rows = [row for rate in rates for row in answers(rate, seconds)]
         print(table(('commands', 'rate, Hz', 'delay p50, ms', 'p99'), rows), flush=True)
     except NodeError as error:

@@ -9,11 +9,13 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Vector3Stamped, Wrench
 from nav_msgs.msg import Odometry
 import rclpy
+from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
@@ -22,6 +24,7 @@ from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
 from thrust_allocator.ros.node import ThrustAllocator
 from thrust_allocator.ros.qos import INPUT, OUTPUT
+from thrust_allocator.ros.subscriptions import Unattended
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012
@@ -52,11 +55,11 @@ class Relay(Node):
             (JointState, 'thruster_states'), (MarkerArray, 'thruster_markers'),
             (Float64MultiArray, 'wrench_limits'))]
         diagnostics, nothing = self._out(DiagnosticArray, '/diagnostics'), DiagnosticArray()
-        self._in(Odometry, 'odom', self._on_odometry)
-        self._in(Vector3Stamped, 'current', lambda message: None)
+        group = Unattended() if tricks else None
+        self._states = [self._in(Odometry, 'odom', self._on_odometry, group),
+                        self._in(Vector3Stamped, 'current', lambda message: None, group)]
         self._in(Wrench, 'cmd_wrench', self._on_wrench)
         self.create_service(SetBool, '~/enable', lambda request, response: response)
-        self.create_guard_condition(lambda: None)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0, lambda: diagnostics.publish(nothing), clock=steady)
         self.create_timer(0.2, lambda: [one.get_subscription_count() for one in asked],
@@ -68,10 +71,11 @@ class Relay(Node):
         events = PublisherEventCallbacks(use_default_callbacks=not self._tricks)
         return self.create_publisher(kind, topic, OUTPUT, event_callbacks=events)
 
-    def _in(self, kind: type, topic: str, callback: Callable[[Any], None]) -> None:
+    def _in(self, kind: type, topic: str, callback: Callable[[Any], None],
+            group: CallbackGroup | None = None) -> Subscription:
         events = SubscriptionEventCallbacks(use_default_callbacks=not self._tricks)
-        self.create_subscription(
-            kind, topic, callback, INPUT, raw=self._tricks, event_callbacks=events)
+        return self.create_subscription(kind, topic, callback, INPUT, raw=self._tricks,
+                                        event_callbacks=events, callback_group=group)
 
     def _on_odometry(self, message: Odometry | bytes) -> None:
         self._velocity = message
@@ -83,6 +87,10 @@ class Relay(Node):
             self._timer.reset()
 
     def _tick(self) -> None:
+        for state in self._states if self._tricks else ():
+            with (waiting := state.handle):
+                while (message := waiting.take_message(state.msg_type, True)) is not None:
+                    state.callback(message[0])
         for publisher, message in zip(self._publishers_of_a_tick, self._messages):
             publisher.publish(message)
 

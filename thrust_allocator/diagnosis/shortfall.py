@@ -104,8 +104,10 @@ def _because(ticks: Sequence[Allocated], vehicle: Vehicle, dof: int, floor: np.n
     acting = np.abs(vehicle.configuration_matrix[dof]) > (
         ROUNDING * np.abs(vehicle.configuration_matrix).max())
     enabled = np.array([one.enabled for one in vehicle.thrusters])
-    held = np.array([tick.allocation.at_bound != 0 for tick in ticks]) & acting & enabled
-    inside = np.array([_inside_speed_limits(tick) for tick in ticks])
+    at_bound = np.array([tick.allocation.at_bound for tick in ticks])  # (n, p)
+    nearer = np.array([tick.allocation.limits != tick.speed_limits for tick in ticks])  # (n, 2, p)
+    held = (at_bound != 0) & acting & enabled
+    inside = np.where(at_bound > 0, nearer[:, 1], nearer[:, 0])  # the limits by the speed
     names = [one.name for one in vehicle.thrusters]
     at_limit = (held & ~inside).mean(axis=0) > MOSTLY
     ramping = (held & inside).mean(axis=0) > MOSTLY
@@ -149,13 +151,6 @@ def _geometry(vehicle: Vehicle, dof: int) -> list[str]:
     with_it = [DOFS[d] for i, d in enumerate(controlled)
                if i != place and abs(lost[i, place]) > 1e-6]
     return [f'it comes only together with {", ".join(with_it)}']
-
-
-def _inside_speed_limits(tick: Allocated) -> np.ndarray:
-    """Tell of each thruster whether the bound that may hold it is nearer than the speed's, (p,)."""
-    rows = (tick.allocation.at_bound > 0).astype(int)
-    columns = np.arange(len(rows))
-    return tick.allocation.limits[rows, columns] != tick.speed_limits[rows, columns]
 
 
 def _list(names: Sequence[str], chosen: np.ndarray) -> str:

@@ -75,7 +75,8 @@ class ThrustAllocator(Node):
         self._wrench_limits = WrenchLimits(self)
         self._marker_publisher = self.create_publisher(
             MarkerArray, 'thruster_markers', 1, qos_overriding_options=OVERRIDABLE)
-        self._ticker = Ticker(self, clock, values, self._tick)
+        self._ticker = Ticker(
+            self, clock, values, self._tick, lambda: self._ears.fetch_wrench())
         self._ears = Subscriptions(
             self, self._inputs, self._ticker.now, values['stamped_wrench'],
             values['velocity_type'], self._ticker.wrench_accepted,
@@ -160,11 +161,13 @@ class ThrustAllocator(Node):
 
     def _forget(self) -> None:
         """Let nothing count that came before the clock went back."""
+        self._ears.fetch_state()
         self._inputs.forget()
         self._ticker.clock_went_back()
 
     def _tick(self, now: int, late: bool) -> None:
         start = time.perf_counter()
+        self._ears.fetch_state()
         tick = self._allocator.tick(self._inputs, now, self._enabled)
         self._send(tick)
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
@@ -189,6 +192,7 @@ class ThrustAllocator(Node):
     # Reports
 
     def _report(self) -> None:
+        self._ears.fetch_state()
         self.reporter.report(self.vehicle, self._ticker.now(), self._simulated)
 
     def _show(self) -> None:

@@ -99,7 +99,8 @@ class Reporter:
     def _look_at_the_graph(self, now: int) -> None:
         """Note who else publishes where one node should, and who cannot hear or be heard."""
         for topic in ALONE:
-            names = publishers(self._node, topic)
+            several = self._node.count_publishers(self._node.resolve_topic_name(topic)) > 1
+            names = publishers(self._node, topic) if several else []
             self._findings.note(
                 f'publishers of {topic}',
                 f'{len(names)} publishers on {topic}: {", ".join(sorted(names))}'

@@ -1,9 +1,10 @@
 """The timer that makes the ticks which the schedule wants."""
 
 from collections.abc import Callable, Mapping
+import time
 from typing import Any
 
-from rclpy.clock import Clock
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from thrust_allocator.schedule import Schedule
 
@@ -12,34 +13,32 @@ class Ticker:
     """Calls for a tick whenever one is due."""
 
     def __init__(self, node: Node, clock: Clock, values: Mapping[str, Any],
-                 tick: Callable[[int, bool], None]) -> None:
+                 tick: Callable[[int, bool], None], fetch_wrench: Callable[[], None]) -> None:
         """
         Start.
 
         :param clock: that times are told by.
         :param values: checked parameters by name.
         :param tick: makes a tick at a time [ns], and is told whether it is late.
+        :param fetch_wrench: has a wrench accepted that has come and waits.
         """
-        self._clock, self._make_tick = clock, tick
+        # The steady clock of ROS is the system's monotonic one, which Python tells faster
+        self.now = (time.monotonic_ns if clock.clock_type == ClockType.STEADY_TIME
+                    else lambda: clock.now().nanoseconds)  # [ns]
+        self._make_tick, self._fetch_wrench = tick, fetch_wrench
         self._schedule = Schedule(values, self.now())
         self._cancelled = False
-        self._timer = node.create_timer(
-            round(1e9 / values['rate']) * 1e-9, self._on_timer, clock=clock)
-        self._after_messages = node.create_guard_condition(self._catch_up)
-
-    def now(self) -> int:
-        """Return the time [ns]."""
-        return self._clock.now().nanoseconds
+        self._period = round(1e9 / values['rate'])  # of the timer [ns]
+        self._timer = node.create_timer(self._period * 1e-9, self._on_timer, clock=clock)
 
     def change(self, values: Mapping[str, Any]) -> None:
         """Go by other parameters from now on."""
         self._schedule.change(values)
         if self._schedule.on_wrench:
-            self._wait_for_the_next()
+            self._wait_for_the_next(self.now())
             return
-        period = round(1e9 / values['rate'])  # [ns]
-        self._timer.timer_period_ns = period
-        if self._timer.time_until_next_call() > period:
+        self._period = self._timer.timer_period_ns = round(1e9 / values['rate'])
+        if self._timer.time_until_next_call() > self._period:
             self._timer.reset()
 
     def wrench_accepted(self, now: int, waited: int) -> None:
@@ -49,7 +48,7 @@ class Ticker:
             if self._schedule.due <= now:
                 self.tick()
             else:
-                self._wait_for_the_next()
+                self._wait_for_the_next(now)
 
     def wrench_forgotten(self) -> None:
         """Expect no expiry of a wrench that counts no more."""
@@ -62,9 +61,10 @@ class Ticker:
 
     def clock_went_back(self) -> None:
         """Forget the last tick."""
-        self._schedule.forget(self.now())
+        now = self.now()
+        self._schedule.forget(now)
         if self._schedule.on_wrench:
-            self._wait_for_the_next()
+            self._wait_for_the_next(now)
 
     def cancel(self) -> None:
         """Make no ticks any more, whatever comes."""
@@ -76,21 +76,19 @@ class Ticker:
         if self._cancelled:
             return
         now = self.now()
-        self._make_tick(now, self._schedule.tick(now))
+        late = self._schedule.tick(now)
         if self._schedule.on_wrench:
-            self._wait_for_the_next()
+            self._wait_for_the_next(now)
+        self._make_tick(now, late)
 
     def _on_timer(self) -> None:
-        if self._schedule.is_late(self.now()):
-            self._after_messages.trigger()  # so that what has come meanwhile is taken first
-        else:
-            self.tick()
+        self._fetch_wrench()
+        if not self._schedule.on_wrench or self._schedule.due <= self.now():
+            self.tick()  # else that wrench has made it
 
-    def _catch_up(self) -> None:
-        if self._schedule.due <= self.now():  # no wrench among the messages has made the tick
-            self.tick()
-
-    def _wait_for_the_next(self) -> None:
+    def _wait_for_the_next(self, now: int) -> None:
         """Have the timer, which would go on at its period otherwise, call when a tick is due."""
-        self._timer.timer_period_ns = max(self._schedule.due - self.now(), 0)
+        wait = max(self._schedule.due - now, 0)
+        if wait != self._period:  # mostly it is 1.5 periods of ticks once more
+            self._period = self._timer.timer_period_ns = wait
         self._timer.reset()

@@ -145,8 +145,8 @@ def report(quick: bool = False) -> None:
         rows = [row for rate in rates for row in compare(rate, seconds, repeats)]
         print(table(('process', 'rate, Hz', 'CPU, of a core', 'from, to', '/ relay',
                      'delay p50, ms', 'p99'), rows), flush=True)
-        print('\nThe node with controllers of other rates than its own, once each. A command within\n'
-              'half a period of the last that was answered has to wait until that is over.\n')
+        print('\nThe node with controllers of other rates than its own, once each. A command '
+              'within\nhalf a period of the last that was answered waits until that is over.\n')
         rows = [row for rate in rates for row in answers(rate, seconds)]
         print(table(('commands', 'rate, Hz', 'delay p50, ms', 'p99'), rows), flush=True)
     except NodeError as error:

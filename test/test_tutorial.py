@@ -117,9 +117,9 @@ def test_what_gives_way_as_shown(start, my_vehicle):
         return tick['achieved_wrench'][[0, 5]]
 
     assert_allclose(after('direction_keeping', '0.0'), [109.5, 0.0], atol=0.06)
-    node._report()  # of what was before
+    node.report()  # of what was before
     peer.settle(command, forward)
-    node._report()
+    node.report()
     said = re.sub('in [0-9]+% of', 'in 100% of', node.reporter.present('shortfall'))
     status, = yaml.safe_load(shown('## 8. Read the diagnostics'))['status']
     assert (status['level'], status['message']) == (chr(Level.WARN), said)

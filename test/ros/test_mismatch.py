@@ -43,7 +43,7 @@ def reported(node, kind):
     executor.add_node(node)
     deadline = time.monotonic() + TIMEOUT
     while True:
-        node._report()
+        node.report()
         text = node.reporter.present(kind)
         if text and 'not known yet' not in text:
             return text
@@ -63,7 +63,7 @@ def test_a_command_of_another_type(meeting, stamped, kind, said):
     topic = f'{NAMESPACE}/cmd_wrench'
     assert reported(node, f'ends of {topic}') == f'{topic}: {NAMESPACE}/stranger {said}'
     node._ticker.tick()
-    node._report()
+    node.report()
     assert 'those who publish cannot be heard' in node.reporter.present('wrench')
 
 
@@ -133,7 +133,7 @@ def test_a_command_that_is_old_by_its_stamp(meeting):
     node, _ = meeting('stamped_wrench:=true')
     node._inputs.accept_wrench(np.ones(6), node._ticker.now(), old=5 * 10**9)
     node._ticker.tick()
-    node._report()
+    node.report()
     assert 'by its stamp it was 5.0 s old when it came' in node.reporter.present('wrench')
 
 
@@ -150,7 +150,7 @@ def test_a_twist_in_axes_of_the_world(start, frame, child, told):
 
     peer.on_tick = send
     peer.wait_until(lambda: node._inputs.velocity is not None, 'the odometry')
-    node._report()
+    node.report()
     assert bool(node.reporter.present('frames')) == told
 
 

@@ -1,6 +1,7 @@
 """A peer that moves the node's clock tick by tick, and sees and does all that a pilot can."""
 
 from collections.abc import Sequence
+import math
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -35,7 +36,7 @@ class SteppedPeer(Peer):
     """
 
     def __init__(self, context: rclpy.Context, *, beside: ThrustAllocator) -> None:
-        """Start the clock, and stop the node's timer of reports."""
+        """Start the clock, and have the node report only when it is asked."""
         super().__init__(context, beside=beside, name='stepped_peer')
         self.node = beside
         self.bounds = ThrustBounds(beside.vehicle)  # of frd velocities
@@ -56,9 +57,7 @@ class SteppedPeer(Peer):
         self.create_subscription(Log, '/rosout', self._on_log, 1000)
         self._enable = self.create_client(SetBool, f'{beside.get_name()}/enable')
         self._parameters = AsyncParameterClient(self, beside.get_name())
-        self._report_timer, = (
-            timer for timer in beside.timers if timer.timer_period_ns == SECOND)
-        self._report_timer.cancel()
+        beside.report_due = math.inf
         ends = [*self._inputs.values(), self._current_publisher, self._clock_publisher]
         self.wait_until(lambda: all(end.get_subscription_count() for end in ends)
                         and self._enable.service_is_ready()
@@ -160,7 +159,8 @@ class SteppedPeer(Peer):
     def report(self) -> tuple[str, str, dict[str, str]]:
         """Have the node report, and return its level, its message and its figures."""
         known = len(self.statuses)
-        self._report_timer.callback()
+        self.node.report()
+        self.node.report_due = math.inf
         self.wait_until(lambda: len(self.statuses) > known, 'diagnostics')
         status = self.statuses[-1]
         return (LEVELS[status.level], status.message,

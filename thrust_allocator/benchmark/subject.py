@@ -61,9 +61,13 @@ class Relay(Node):
         self._in(Wrench, 'cmd_wrench', self._on_wrench)
         self.create_service(SetBool, '~/enable', lambda request, response: response)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(1.0, lambda: diagnostics.publish(nothing), clock=steady)
-        self.create_timer(0.2, lambda: [one.get_subscription_count() for one in asked],
-                          clock=steady)
+
+        def show() -> None:
+            for one in asked:
+                one.get_subscription_count()
+            diagnostics.publish(nothing)
+
+        self.create_timer(0.2, show, clock=steady)
         period = (1.5 if tricks else 1.0) / self.get_parameter('rate').value  # [s]
         self._timer = self.create_timer(period, self._tick, clock=steady)
 

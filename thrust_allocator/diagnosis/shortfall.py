@@ -67,15 +67,15 @@ def shortfall(ticks: Sequence[Allocated], count: int, vehicle: Vehicle, floor: n
     weights = np.array(vehicle.wrench_weights)
     missing = np.abs(unallocated) > np.maximum(SHARE * np.abs(commands), floor)
     asked = np.abs(commands) > floor
-    parts = []
+    parts, causes = [], None
     for dof in range(6):
         if weights[dof]:
             short = missing[:, dof]
             if short.sum() > OFTEN * count:
+                causes = causes or Causes(ticks, vehicle, floor)
                 parts.append(_missing(dof, commands[short], unallocated[short], floor)
-                             + f' in {short.sum() / count:.0%} of the ticks'
-                             + _because([tick for tick, is_short in zip(ticks, short) if is_short],
-                                        vehicle, dof, floor))
+                             + f' in {short.sum() / count:.0%} of the ticks: '
+                             + causes.of(dof, short))
         elif asked[:, dof].sum() > OFTEN * count:
             parts.append(f'{DOFS[dof]} is commanded but not controlled (wrench_weights.{DOFS[dof]} '
                          'is 0)')
@@ -98,38 +98,52 @@ def _number(value: float) -> str:
     return f'{value + 0.0:.3g}' if abs(value) < 1000.0 else f'{value:.0f}'
 
 
-def _because(ticks: Sequence[Allocated], vehicle: Vehicle, dof: int, floor: np.ndarray) -> str:
-    """Name the causes that are known, or '' where none is."""
-    causes = [*_geometry(vehicle, dof)]
-    acting = np.abs(vehicle.configuration_matrix[dof]) > (
-        ROUNDING * np.abs(vehicle.configuration_matrix).max())
-    enabled = np.array([one.enabled for one in vehicle.thrusters])
-    at_bound = np.array([tick.allocation.at_bound for tick in ticks])  # (n, p)
-    nearer = np.array([tick.allocation.limits != tick.speed_limits for tick in ticks])  # (n, 2, p)
-    held = (at_bound != 0) & acting & enabled
-    inside = np.where(at_bound > 0, nearer[:, 1], nearer[:, 0])  # the limits by the speed
-    names = [one.name for one in vehicle.thrusters]
-    at_limit = (held & ~inside).mean(axis=0) > MOSTLY
-    ramping = (held & inside).mean(axis=0) > MOSTLY
-    if at_limit.any():
-        causes.append(_list(names, at_limit) + (' at the limit' if at_limit.sum() > 1
-                                                else ' at its limit'))
-    if ramping.any():
-        causes.append(_list(names, ramping) + ' held back by max_rate')
-    if (acting & ~enabled).any():
-        causes.append(_list(names, acting & ~enabled) + ' off')
-    allocations = [tick.allocation for tick in ticks]
-    if np.mean([one.power_scale < 1.0 for one in allocations]) > MOSTLY:
-        causes.append('power_limit')
-    if np.mean([one.direction_scale < 1.0 for one in allocations]) > MOSTLY:
-        causes.append('scaled to keep the direction')
-    worth = np.array(vehicle.wrench_weights) * floor**2  # that of an equal share of each authority
-    dearer = worth * LIGHT > worth[dof]
-    if not causes:
-        causes.append(f'wrench_weights.{DOFS[dof]} is low against the weights of the thrusters')
-    elif dearer.any():
-        causes.append(f'its low weight gives way to {_list(DOFS, dearer)}')
-    return f': {", ".join(causes)}'
+class Causes:
+    """What stood in the way of the commands of a second, tick by tick."""
+
+    def __init__(self, ticks: Sequence[Allocated], vehicle: Vehicle, floor: np.ndarray) -> None:
+        """Gather it of n ticks with a wrench; `floor` is (6,) [N, N*m]."""
+        allocations = [tick.allocation for tick in ticks]
+        at_bound = np.array([one.at_bound for one in allocations])  # (n, p)
+        by_more = (np.array([one.limits for one in allocations])  # (n, 2, p), nearer than by speed
+                   != np.array([tick.speed_limits for tick in ticks]))
+        enabled = np.array([one.enabled for one in vehicle.thrusters])
+        self._held = (at_bound != 0) & enabled
+        self._by_rate = np.where(at_bound > 0, by_more[:, 1], by_more[:, 0])
+        self._by_power = np.array([one.power_scale < 1.0 for one in allocations])
+        self._by_direction = np.array([one.direction_scale < 1.0 for one in allocations])
+        self._off = ~enabled
+        self._acting = np.abs(vehicle.configuration_matrix) > (
+            ROUNDING * np.abs(vehicle.configuration_matrix).max())  # (6, p)
+        # That of an equal share of each authority
+        self._worth = np.array(vehicle.wrench_weights) * floor**2
+        self._vehicle = vehicle
+
+    def of(self, dof: int, short: np.ndarray) -> str:
+        """Name the causes that are known of what was missing of a DOF in some ticks, (n,)."""
+        causes, acting = [*_geometry(self._vehicle, dof)], self._acting[dof]
+        names = [one.name for one in self._vehicle.thrusters]
+        held, by_rate = self._held[short] & acting, self._by_rate[short]
+        at_limit = (held & ~by_rate).mean(axis=0) > MOSTLY
+        ramping = (held & by_rate).mean(axis=0) > MOSTLY
+        if at_limit.any():
+            causes.append(_list(names, at_limit) + (' at the limit' if at_limit.sum() > 1
+                                                    else ' at its limit'))
+        if ramping.any():
+            causes.append(_list(names, ramping) + ' held back by max_rate')
+        if (acting & self._off).any():
+            causes.append(_list(names, acting & self._off) + ' off')
+        if self._by_power[short].mean() > MOSTLY:
+            causes.append('power_limit')
+        if self._by_direction[short].mean() > MOSTLY:
+            causes.append('scaled to keep the direction')
+        dearer = self._worth * LIGHT > self._worth[dof]
+        if not causes:
+            causes.append(
+                f'wrench_weights.{DOFS[dof]} is low against the weights of the thrusters')
+        elif dearer.any():
+            causes.append(f'its low weight gives way to {_list(DOFS, dearer)}')
+        return ', '.join(causes)
 
 
 def _geometry(vehicle: Vehicle, dof: int) -> list[str]:

@@ -32,8 +32,9 @@ from thrust_allocator.tick import Allocator, Tick
 from visualization_msgs.msg import MarkerArray
 
 LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
-REPORT_PERIOD = 1.0  # [s] between diagnostics
 SHOW_PERIOD = 0.2  # [s] between pictures, and between wrench limits, if anybody looks
+REPORT_PERIOD = 10**9  # [ns] between diagnostics, or until the tick after
+OVERDUE = 10**8  # [ns] after which they do not wait for a tick any more
 
 
 class ThrustAllocator(Node):
@@ -90,7 +91,7 @@ class ThrustAllocator(Node):
             lambda changes: coerced(changes, self._description.parameters))
         self.add_on_set_parameters_callback(self._check_change)
         self.add_post_set_parameters_callback(self._apply)
-        self.create_timer(REPORT_PERIOD, self._report, clock=steady)
+        self.report_due = time.monotonic_ns() + REPORT_PERIOD
         self.create_timer(SHOW_PERIOD, self._show, clock=steady)
         if self._simulated:
             self._jump_handle = clock.create_jump_callback(
@@ -173,6 +174,8 @@ class ThrustAllocator(Node):
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
             self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
         self.reporter.tick(tick, now, time.perf_counter() - start, late)
+        if time.monotonic_ns() >= self.report_due:  # while the next wrench is far away
+            self.report()
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
@@ -191,12 +194,15 @@ class ThrustAllocator(Node):
 
     # Reports
 
-    def _report(self) -> None:
+    def report(self) -> None:
+        self.report_due = time.monotonic_ns() + REPORT_PERIOD
         self._ears.fetch_state()
         self.reporter.report(self.vehicle, self._ticker.now(), self._simulated)
 
     def _show(self) -> None:
         """Publish a picture of the last tick, and what could still be asked, if anybody looks."""
+        if time.monotonic_ns() >= self.report_due + OVERDUE:
+            self.report()
         if self._last_tick is None:
             return
         self.reporter.note('wrench limits', self._wrench_limits.publish(

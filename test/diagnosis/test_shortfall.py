@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.vehicles import described, mt2012, random_vehicle, thruster
-from thrust_allocator.diagnosis.shortfall import Allocated, shortfall, Yardstick
+from thrust_allocator.diagnosis.causes import Allocated
+from thrust_allocator.diagnosis.shortfall import shortfall, Yardstick
 from thrust_allocator.inputs import Inputs
 from thrust_allocator.physics.frames import DOFS
 from thrust_allocator.physics.models import Constant

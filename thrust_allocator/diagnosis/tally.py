@@ -1,10 +1,12 @@
 """What a pilot should know of the ticks of the last second: findings, and figures."""
 
 from dataclasses import dataclass, field
+import math
 
 import numpy as np
+from thrust_allocator.diagnosis.causes import Allocated
 from thrust_allocator.diagnosis.findings import Findings, Level
-from thrust_allocator.diagnosis.shortfall import Allocated, shortfall, Yardstick
+from thrust_allocator.diagnosis.shortfall import shortfall, Yardstick
 from thrust_allocator.physics.power import PredictedPower
 from thrust_allocator.physics.vehicle import Vehicle
 from thrust_allocator.solve.problem import Allocation
@@ -67,9 +69,9 @@ class Tally:
         return {
             **allocation_figures(
                 self.allocated[-1].allocation if self.allocated else None, vehicle),
-            'iterations, mean': f'{np.mean(iterations):.2f}',
+            'iterations, mean': f'{sum(iterations) / len(iterations):.2f}',
             'iterations, worst': str(max(iterations)),
-            'tick time, mean [ms]': f'{1e3 * np.mean(times):.3f}',
+            'tick time, mean [ms]': f'{1e3 * sum(times) / len(times):.3f}',
             'tick time, worst [ms]': f'{1e3 * max(times):.3f}',
             'ticks': str(len(self.times)),
             'ticks late': str(self.late),
@@ -102,6 +104,6 @@ def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[
         'solver status': 'not called' if allocation is None else allocation.status,
         'thrusters at a bound': ', '.join(at_bound),
         'thrusters off': ', '.join(one.name for one in vehicle.thrusters if not one.enabled),
-        'unallocated force [N]': f'{np.linalg.norm(unallocated[:3]):.2f}',
-        'unallocated moment [N*m]': f'{np.linalg.norm(unallocated[3:]):.2f}',
+        'unallocated force [N]': f'{math.hypot(*unallocated[:3]):.2f}',
+        'unallocated moment [N*m]': f'{math.hypot(*unallocated[3:]):.2f}',
     }

@@ -5,7 +5,7 @@ import pytest
 
 @pytest.mark.parametrize('place', [
     'allocation.AllocationProblem, "solve"', 'bounds.ThrustBounds, "in_flow"',
-    'inputs.Inputs, "accept_wrench"', 'node.ThrustAllocator, "report"',
+    'inputs.Inputs, "accept_wrench"', 'node.ThrustAllocator, "_begin_report"',
     'node.ThrustAllocator, "_send"'])
 def test_an_exception_in_a_callback(breaking, place):
     """After an exception, wherever it comes from, zeros come last and the status is not 0."""
@@ -20,7 +20,7 @@ def test_an_exception_in_a_callback(breaking, place):
     'patch(inputs.Inputs, "accept_wrench", lambda *_: rclpy.try_shutdown())',
     'patch(allocation.AllocationProblem, "solve",'
     ' lambda original, *arguments: (rclpy.try_shutdown(), original(*arguments))[1])',
-    'patch(node.ThrustAllocator, "report",'
+    'patch(node.ThrustAllocator, "_begin_report",'
     ' lambda original, *arguments: (rclpy.try_shutdown(), original(*arguments))[1])',
 ], ids=['in a thread', 'between ticks', 'in a tick', 'in a report'])
 def test_a_context_shut_down_from_outside(breaking, change):

@@ -49,7 +49,8 @@ def told(owner, name, word):
     setattr(owner, name, call)
 
 class Time:  # the module time as the node sees it
-    perf_counter, sleep = node.time.perf_counter, node.time.sleep
+    perf_counter, monotonic_ns = node.time.perf_counter, node.time.monotonic_ns
+    sleep = node.time.sleep
 
 told(Publisher, 'wait_for_all_acked',
      lambda own, result: f'acknowledged {own[0].topic.split("/")[-1]} {result}')

@@ -1,6 +1,7 @@
 """The process whose cost is measured: our node, or a relay with the same wiring."""
 
 from collections.abc import Callable, Sequence
+from itertools import cycle
 import json
 import sys
 from typing import Any
@@ -61,11 +62,13 @@ class Relay(Node):
         self._in(Wrench, 'cmd_wrench', self._on_wrench)
         self.create_service(SetBool, '~/enable', lambda request, response: response)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
+        turns = cycle(range(5))
 
         def show() -> None:
             for one in asked:
                 one.get_subscription_count()
-            diagnostics.publish(nothing)
+            if next(turns) == 0:
+                diagnostics.publish(nothing)
 
         self.create_timer(0.2, show, clock=steady)
         period = (1.5 if tricks else 1.0) / self.get_parameter('rate').value  # [s]

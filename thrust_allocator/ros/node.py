@@ -1,6 +1,6 @@
 """The ROS 2 node: takes messages in, asks for a tick, and sends it out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import copy
 import time
 from typing import Any
@@ -34,7 +34,6 @@ from visualization_msgs.msg import MarkerArray
 LINGER = 0.1  # [s] for subscribers that acknowledge nothing to receive the last zeros
 SHOW_PERIOD = 0.2  # [s] between pictures, and between wrench limits, if anybody looks
 REPORT_PERIOD = 10**9  # [ns] between diagnostics, or until the tick after
-OVERDUE = 10**8  # [ns] after which they do not wait for a tick any more
 
 
 class ThrustAllocator(Node):
@@ -92,6 +91,7 @@ class ThrustAllocator(Node):
         self.add_on_set_parameters_callback(self._check_change)
         self.add_post_set_parameters_callback(self._apply)
         self.report_due = time.monotonic_ns() + REPORT_PERIOD
+        self._reporting: Iterator[None] = iter(())
         self.create_timer(SHOW_PERIOD, self._show, clock=steady)
         if self._simulated:
             self._jump_handle = clock.create_jump_callback(
@@ -174,8 +174,7 @@ class ThrustAllocator(Node):
         if tick.allocation is not None and tick.allocation.status == 'interrupted':
             self.interrupted = True  # OSQP swallows a SIGINT that comes while it works
         self.reporter.tick(tick, now, time.perf_counter() - start, late)
-        if time.monotonic_ns() >= self.report_due:  # while the next wrench is far away
-            self.report()
+        self._go_on_reporting()  # while the next wrench is far away
 
     def _send(self, tick: Tick) -> None:
         self._last_tick = tick
@@ -195,14 +194,25 @@ class ThrustAllocator(Node):
     # Reports
 
     def report(self) -> None:
+        """Publish diagnostics at once."""
+        self._begin_report()
+        for _ in self._reporting:
+            pass
+
+    def _begin_report(self) -> None:
         self.report_due = time.monotonic_ns() + REPORT_PERIOD
         self._ears.fetch_state()
-        self.reporter.report(self.vehicle, self._ticker.now(), self._simulated)
+        self._reporting = self.reporter.report(self.vehicle, self._ticker.now(), self._simulated)
+
+    def _go_on_reporting(self) -> None:
+        """Do the next step of a report, if one has been begun or is due."""
+        if time.monotonic_ns() >= self.report_due:
+            self._begin_report()
+        next(self._reporting, None)
 
     def _show(self) -> None:
         """Publish a picture of the last tick, and what could still be asked, if anybody looks."""
-        if time.monotonic_ns() >= self.report_due + OVERDUE:
-            self.report()
+        self._go_on_reporting()  # though no tick may have come
         if self._last_tick is None:
             return
         self.reporter.note('wrench limits', self._wrench_limits.publish(

@@ -1,6 +1,6 @@
 """What the node says of itself: findings as they come and go, and diagnostics once a second."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
@@ -58,9 +58,9 @@ class Reporter:
         """Return the words of a finding that is there, or ''."""
         return self._findings.present(kind)
 
-    def report(self, vehicle: Vehicle, now: int, ticks_by_clock: bool) -> None:
+    def report(self, vehicle: Vehicle, now: int, ticks_by_clock: bool) -> Iterator[None]:
         """
-        Publish the diagnostics since the last report.
+        Publish the diagnostics since the last report, in steps, lest a wrench wait for all of it.
 
         :param now: on the clock of the ticks [ns].
         :param ticks_by_clock: whether that is /clock, which may stand.
@@ -75,13 +75,14 @@ class Reporter:
         note('dropped', f'messages dropped: {", ".join(sorted(fresh))}' if fresh else '', now)
         note('thrusters off', thrusters_off(vehicle), now)
         note('frames', self._frames(), now)
-        self._look_at_the_graph(now)
-        if self._findings.present('wrench'):
-            self._note_no_wrench(now)
         if not self._yardstick.measures(vehicle):
             self._yardstick = Yardstick(vehicle)
         note('shortfall', tally.shortfall(vehicle, self._yardstick), now)
-
+        yield
+        self._look_at_the_graph(now)
+        if self._findings.present('wrench'):
+            self._note_no_wrench(now)
+        yield
         node = self._node
         level, text = self._findings.overall(now)
         self._publisher.publish(DiagnosticArray(

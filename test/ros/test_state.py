@@ -1,6 +1,7 @@
 """What tells of the vehicle's state: it wakes nobody, is fetched, and counts from when it came."""
 
 from contextlib import contextmanager
+from copy import copy
 import math
 import time
 
@@ -41,7 +42,9 @@ class Listener:
 @contextmanager
 def listening(*arguments):
     """Start a Listener with a peer, with ROS arguments."""
-    with ros_context(*arguments) as context:
+    with ros_context(*arguments) as context, pytest.MonkeyPatch.context() as patch:
+        # rclpy writes an override into the profile that it is given
+        patch.setattr(subscriptions, 'INPUT', copy(subscriptions.INPUT))
         one = Listener(context)
         yield one
         one.peer.close()

@@ -221,6 +221,17 @@ def test_the_default_file_is_looked_for_where_it_is_installed(tmp_path, monkeypa
         assert default_parameter_file() == place / 'config' / 'mt2012.yaml'
 
 
+def test_the_default_file_of_a_workspace_comes_first(tmp_path, monkeypatch):
+    """Of the workspaces that are sourced, the first that has the file."""
+    prefixes = [tmp_path / name for name in ('other', 'overlay', 'underlay')]
+    monkeypatch.setenv('AMENT_PREFIX_PATH', ':'.join(map(str, prefixes)))
+    assert not default_parameter_file().is_relative_to(tmp_path)
+    for prefix in reversed(prefixes[1:]):
+        (config := prefix / 'share' / 'thrust_allocator' / 'config').mkdir(parents=True)
+        (config / 'mt2012.yaml').touch()
+        assert default_parameter_file() == config / 'mt2012.yaml'
+
+
 @pytest.mark.parametrize('more', [
     '', 'thrust_allocator: {ros__parameters: {water_density: 998}}',
     'thrust_allocator: {ros__parameters: {water_density: 9.98e2, thrusters.up.weight: 0x2}}',

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+import os
 from pathlib import Path
 import re
 import sysconfig
@@ -99,13 +100,10 @@ def default_parameter_file() -> Path:
 
     :raises ParameterError: if the package was installed without it.
     """
-    places = [Path(sysconfig.get_path('data'), 'share', NODE_NAME),
+    workspaces = filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep))
+    places = [*(Path(prefix, 'share', NODE_NAME)
+                for prefix in (*workspaces, sysconfig.get_path('data'))),
               Path(__file__).resolve().parents[2]]
-    try:
-        from ament_index_python.packages import get_package_share_directory
-        places.insert(0, Path(get_package_share_directory(NODE_NAME)))
-    except (ImportError, LookupError, OSError):  # no ROS, or this package is not in a workspace
-        pass
     for place in places:
         if (file := place / 'config' / 'mt2012.yaml').is_file():
             return file

@@ -36,9 +36,13 @@ def trouble(allocation: Allocation | None) -> str:
 
 
 def thrusters_off(vehicle: Vehicle) -> str:
-    """Name the thrusters that are not in use."""
-    off = [one.name for one in vehicle.thrusters if not one.enabled]
-    return f'{", ".join(off)} off: enabled is false' if off else ''
+    """Say which thrusters are off, or ''."""
+    off = _off(vehicle)
+    return f'{off} off: enabled is false' if off else ''
+
+
+def _off(vehicle: Vehicle) -> str:
+    return ', '.join(one.name for one in vehicle.thrusters if not one.enabled)
 
 
 @dataclass
@@ -103,7 +107,7 @@ def allocation_figures(allocation: Allocation | None, vehicle: Vehicle) -> dict[
     return {
         'solver status': 'not called' if allocation is None else allocation.status,
         'thrusters at a bound': ', '.join(at_bound),
-        'thrusters off': ', '.join(one.name for one in vehicle.thrusters if not one.enabled),
+        'thrusters off': _off(vehicle),
         'unallocated force [N]': f'{math.hypot(*unallocated[:3]):.2f}',
         'unallocated moment [N*m]': f'{math.hypot(*unallocated[3:]):.2f}',
     }

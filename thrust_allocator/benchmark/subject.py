@@ -25,7 +25,7 @@ from thrust_allocator.ros import process
 from thrust_allocator.ros.messages import array_message
 from thrust_allocator.ros.node import ThrustAllocator
 from thrust_allocator.ros.qos import INPUT, OUTPUT
-from thrust_allocator.ros.subscriptions import Unattended
+from thrust_allocator.ros.subscriptions import messages_waiting, Unattended
 from visualization_msgs.msg import MarkerArray
 
 THRUSTERS = 5  # of MT-2012
@@ -95,9 +95,8 @@ class Relay(Node):
 
     def _tick(self) -> None:
         for state in self._states if self._tricks else ():
-            with (waiting := state.handle):
-                while (message := waiting.take_message(state.msg_type, True)) is not None:
-                    state.callback(message[0])
+            for raw, _ in messages_waiting(state):
+                state.callback(raw)
         for publisher, message in zip(self._publishers_of_a_tick, self._messages):
             publisher.publish(message)
 

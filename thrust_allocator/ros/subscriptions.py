@@ -1,6 +1,6 @@
 """The topics that carry what is commanded and measured into the node."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 import time
 from typing import Any
@@ -40,6 +40,13 @@ class Unattended(CallbackGroup):
         """Have nothing to end."""
 
 
+def messages_waiting(subscription: Subscription) -> Iterator[tuple[bytes, dict]]:
+    """Take what waits in a raw subscription: bytes, and when they were sent and received."""
+    with subscription.handle:
+        while (message := subscription.handle.take_message(subscription.msg_type, True)):
+            yield message
+
+
 class Subscriptions:
     """
     Puts what comes into the inputs, as bytes of which only the numbers wanted are read.
@@ -72,9 +79,9 @@ class Subscriptions:
             self._listen_to_numbers('current', CURRENT, self._take_current)
         else:
             self._listen_to_numbers('twist', VELOCITIES[velocity_type], self._take_twist)
-        wrench = WRENCH_STAMPED if stamped_wrench else WRENCH
-        self._wrench = self._listen(
-            'cmd_wrench', wrench.kind, wrench.read, self._take_wrench, wakes=True)
+        self._wrench = self._listen_to_numbers(
+            'cmd_wrench', WRENCH_STAMPED if stamped_wrench else WRENCH, self._take_wrench,
+            wakes=True)
         self._battery: Subscription | None = None
 
     def listen_to_battery(self, on: bool) -> None:
@@ -99,13 +106,13 @@ class Subscriptions:
         self._fetch(self._wrench)
 
     def _fetch(self, subscription: Subscription) -> None:
-        with (waiting := subscription.handle):
-            while (message := waiting.take_message(subscription.msg_type, True)) is not None:
-                self._receivers[subscription](*message)
+        for raw, info in messages_waiting(subscription):
+            self._receivers[subscription](raw, info)
 
     def _listen_to_numbers(self, topic: str, form: Form,
-                           take: Callable[[Content, int, int], None]) -> None:
-        self._listen(topic, form.kind, form.read, take)
+                           take: Callable[[Content, int, int], None],
+                           wakes: bool = False) -> Subscription:
+        return self._listen(topic, form.kind, form.read, take, wakes)
 
     def _listen(self, topic: str, kind: type, read: Callable[[bytes], Any],
                 take: Callable[[Any, int, int], None], wakes: bool = False) -> Subscription:

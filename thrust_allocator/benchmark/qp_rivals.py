@@ -22,12 +22,12 @@ class Quadprog(Rival):
         linear = -(self.gradient @ wrench[self.controlled])
         free = upper - lower > NARROW
         if free.all():
-            return self.library.solve_qp(self.hessian, linear, self._constraints,
-                                         np.concatenate([lower, -upper]))[0]
+            return self.module.solve_qp(self.hessian, linear, self._constraints,
+                                        np.concatenate([lower, -upper]))[0]
         thrusts = lower.copy()
         if free.any():
             linear -= self.hessian[:, ~free] @ thrusts[~free]
-            thrusts[free] = self.library.solve_qp(
+            thrusts[free] = self.module.solve_qp(
                 self.hessian[np.ix_(free, free)], linear[free],
                 self._constraints[free][:, np.tile(free, 2)],
                 np.concatenate([lower[free], -upper[free]]))[0]
@@ -43,7 +43,7 @@ class Daqp(Rival):
     def __init__(self, vehicle: Vehicle) -> None:
         super().__init__(vehicle)
         none = np.zeros((0, self.count))
-        self._model = self.library.Model()
+        self._model = self.module.Model()
         self._model.setup(self.hessian, np.zeros(self.count), none, np.ones(self.count),
                           -np.ones(self.count), np.zeros(self.count, dtype=np.int32))
 
@@ -70,11 +70,11 @@ class CasadiQrqp(Rival):
         super().__init__(vehicle)
         weights = np.concatenate([self.thrust_weights, self.wrench_weights])
         slack = len(self.wrench_weights)
-        self._hessian = self.library.DM(scipy.sparse.diags(weights, format='csc'))
-        self._rows = self.library.DM(scipy.sparse.csc_matrix(
+        self._hessian = self.module.DM(scipy.sparse.diags(weights, format='csc'))
+        self._rows = self.module.DM(scipy.sparse.csc_matrix(
             np.hstack([self.matrix, -np.eye(slack)])))
         self._unbounded = np.full(slack, np.inf)
-        self._solver = self.library.conic(
+        self._solver = self.module.conic(
             'allocation', 'qrqp', {'h': self._hessian.sparsity(), 'a': self._rows.sparsity()},
             {'print_iter': False, 'print_header': False, 'print_info': False,
              'error_on_fail': False})
@@ -105,7 +105,7 @@ class Osqp(Rival):
         self._set_up(np.zeros(slack + self.count), np.zeros(slack + self.count))
 
     def _set_up(self, lower: np.ndarray, upper: np.ndarray) -> None:
-        self._solver = self.library.OSQP()
+        self._solver = self.module.OSQP()
         self._solver.setup(self._hessian, np.zeros(len(lower)), self._rows, lower, upper,
                            verbose=False)
 

@@ -23,7 +23,7 @@ class Rival(ABC):
 
         :raises ImportError: if `package` is not installed.
         """
-        self.library = import_module(self.package) if self.package else None
+        self.module = import_module(self.package) if self.package else None
         self.solved = True  # whether the allocator itself was content with the last tick
         self.controlled = np.flatnonzero(vehicle.wrench_weights)
         self.thrust_weights = np.array([thruster.weight for thruster in vehicle.thrusters])
@@ -95,8 +95,8 @@ class BoundedLeastSquares(Rival):
         thrusts = limits[0].copy()
         if not free.all():
             target -= self._rows[:, ~free] @ thrusts[~free]
-        result = self.library.lsq_linear(self._rows[:, free], target, limits[:, free],
-                                         method='bvls')
+        result = self.module.lsq_linear(self._rows[:, free], target, limits[:, free],
+                                        method='bvls')
         self.solved, thrusts[free] = result.success, result.x
         return thrusts
 
@@ -119,7 +119,7 @@ class SequentialLeastSquares(Rival):
             push = self.hessian @ thrusts
             return thrusts @ (0.5 * push + linear), push + linear
 
-        result = self.library.minimize(
+        result = self.module.minimize(
             cost, np.clip(self._thrusts, *limits), jac=True, method='SLSQP', bounds=limits.T)
         self.solved, self._thrusts = result.success, result.x
         return result.x
